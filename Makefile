@@ -1,0 +1,70 @@
+# Two commands matter: `make run` shows the package at work, `make test` checks all of it.
+# Everything is installed into .venv; a stamp file there keeps a second call from installing again.
+
+VENV ?= .venv
+BIN := $(VENV)/bin
+MADE := $(VENV)/.made
+RUN := $(VENV)/.installed-run
+DEV := $(VENV)/.installed-dev
+INPUTS := pyproject.toml constraints.txt
+
+# The first interpreter that starts and is new enough. A name on the PATH may be an empty shim.
+CANDIDATES := python3.11 python3 python3.12 python3.13
+FIND_PYTHON = for p in $(CANDIDATES); do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done
+
+.PHONY: help run test test-slow lint docs bench clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make run        install, then run examples/spinning.toml into results/spinning"
+	@echo "make test       install all that is needed, then every check and the tests"
+	@echo "make test-slow  the tests that take minutes"
+	@echo "make lint       style, types and import rules"
+	@echo "make docs       build the documentation into site/"
+	@echo "make bench      cost per step and per period"
+	@echo "make clean      remove what the other commands made, results excepted"
+
+run: $(RUN)
+	$(BIN)/undula run examples/spinning.toml --out results/spinning --overwrite
+
+test: lint docs
+	$(BIN)/python -m pytest
+
+test-slow: $(DEV)
+	$(BIN)/python -m pytest -m slow
+
+lint: $(DEV)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+docs: $(DEV)
+	NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --strict --quiet
+
+bench: $(RUN)
+	$(BIN)/python benchmarks/step_cost.py
+
+clean:
+	rm -rf $(VENV) site build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis .benchmarks
+	find src tests benchmarks examples -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
+
+$(MADE):
+	@python=$$($(FIND_PYTHON)); \
+	if [ -z "$$python" ]; then \
+		echo "undula needs Python 3.11 or newer and finds none: run 'apt-get install python3 python3-venv', then try again." >&2; exit 1; \
+	fi; \
+	if ! $$python -c 'import ensurepip, venv' 2>/dev/null; then \
+		echo "$$python cannot make a virtual environment: run 'apt-get install python3-venv', then try again." >&2; exit 1; \
+	fi; \
+	$$python -m venv $(VENV)
+	@touch $@
+
+$(RUN): $(MADE) $(INPUTS)
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e .
+	@touch $@
+
+$(DEV): $(MADE) $(INPUTS)
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e '.[dev,docs]'
+	@touch $(RUN) $@
