@@ -1,0 +1,141 @@
+"""What happens between steps: order and length of the next one, and the frame to take it in."""
+
+from typing import Any
+
+import numpy as np
+
+from undula.compiled import kernel
+from undula.numerics.memory import (
+    EQUAL_STEPS,
+    FACTORED_C,
+    FRAME_CHANGES,
+    FRAME_VOTES,
+    IN_FRAME,
+    ORDER,
+    PLANNED_FACTOR,
+    PLANNED_ORDER,
+    SHAPE_SPEED,
+    SPEED,
+    STEP,
+)
+from undula.numerics.stepping import root_mean_square
+from undula.numerics.system import rotate
+
+#: A step is made this much shorter than its error estimate would allow.
+SAFETY = 0.9
+#: No step is shortened by more after an error, or lengthened by more after a success.
+SHORTEST_FACTOR, LONGEST_FACTOR = 0.2, 10.0
+#: A change of length by less is not worth a new matrix.
+WORTHWHILE = 1.1
+#: The frame turns along when less than this part of the speed is a change of shape, in so many
+#: steps on end, and stops when more than the other part is.
+ENGAGE_BELOW, RELEASE_ABOVE, VOTES = 0.3, 0.8, 10
+
+
+@kernel
+def rescale(differences: Any, order: Any, ratio: Any) -> None:
+    """Turn backward differences up to `order` for a step h into those for ratio * h, in place.
+
+    The interpolating polynomial stays the same. Source: Shampine & Reichelt (1997), section 2.3.
+    """
+    change, unit = np.zeros((order + 1, order + 1)), np.zeros((order + 1, order + 1))
+    for k in range(order + 1):
+        change[0, k] = unit[0, k] = 1.0
+        for j in range(1, order + 1):
+            change[j, k] = change[j - 1, k] * (j - 1 - ratio * k) / j
+            unit[j, k] = unit[j - 1, k] * (j - 1 - k) / j
+    product = change @ unit
+    for k in range(1, order + 1):  # row k of the new differences needs rows k and higher only
+        for i in range(differences.shape[1]):
+            differences[k, i] *= product[k, k]
+        for j in range(k + 1, order + 1):
+            for i in range(differences.shape[1]):
+                differences[k, i] += product[j, k] * differences[j, i]
+
+
+@kernel
+def change_step(memory: Any, ratio: Any) -> None:
+    """Change the length of the steps by a factor."""
+    if ratio != 1.0:
+        rescale(memory.differences, memory.count[ORDER], ratio)
+        memory.real[STEP] *= ratio
+        memory.count[EQUAL_STEPS] = 0
+
+
+@kernel
+def accept(memory: Any, work: Any) -> None:
+    """Take the change found into the backward differences."""
+    differences, order = memory.differences, memory.count[ORDER]
+    for i in range(differences.shape[1]):
+        differences[order + 2, i] = work.change[i] - differences[order + 1, i]
+        differences[order + 1, i] = work.change[i]
+    for j in range(order, -1, -1):
+        for i in range(differences.shape[1]):
+            differences[j, i] += differences[j + 1, i]
+    memory.count[EQUAL_STEPS] += 1
+
+
+@kernel
+def plan(memory: Any, options: Any, error: Any, scale: Any) -> None:
+    """Choose order and length of the next step from the errors that each order would make."""
+    order = memory.count[ORDER]
+    memory.count[PLANNED_ORDER] = order
+    memory.real[PLANNED_FACTOR] = 1.0
+    if memory.count[EQUAL_STEPS] < order + 1:
+        return
+    best, best_order = factor_for(error, order), order
+    if order > 1:
+        lower = options.error[order - 1] * root_mean_square(memory.differences[order], options.mask)
+        factor = factor_for(lower / scale, order - 1)
+        if factor > best:
+            best, best_order = factor, order - 1
+    if order + 4 <= memory.differences.shape[0]:
+        size = root_mean_square(memory.differences[order + 2], options.mask)
+        factor = factor_for(options.error[order + 1] * size / scale, order + 1)
+        if factor > best:
+            best, best_order = factor, order + 1
+    factor = min(LONGEST_FACTOR, SAFETY * best, options.longest_step / memory.real[STEP])
+    if best_order != order or factor > WORTHWHILE or factor < 1.0 / WORTHWHILE:
+        memory.count[PLANNED_ORDER] = best_order
+        memory.real[PLANNED_FACTOR] = factor
+
+
+@kernel
+def factor_for(error: Any, order: Any) -> Any:
+    """Return the factor that would bring the error of a step of this order to 1."""
+    return max(error, 1e-10) ** (-1.0 / (order + 1))
+
+
+@kernel
+def choose_frame(system: Any, memory: Any) -> None:
+    """Enter or leave the co-rotating frame when the share of the shape in the speed says so."""
+    in_frame = memory.count[IN_FRAME] == 1
+    share = memory.real[SHAPE_SPEED] / memory.real[SPEED] if memory.real[SPEED] > 0.0 else 1.0
+    votes = share > RELEASE_ABOVE if in_frame else share < ENGAGE_BELOW
+    memory.count[FRAME_VOTES] = memory.count[FRAME_VOTES] + 1 if votes else 0
+    if memory.count[FRAME_VOTES] >= VOTES:
+        memory.count[FRAME_VOTES] = 0
+        memory.count[FRAME_CHANGES] += 1
+        memory.count[IN_FRAME] = 0 if in_frame else 1
+        turn_history(system, memory, 1.0 if in_frame else -1.0)
+        memory.real[FACTORED_C] = 0.0
+
+
+@kernel
+def turn_history(system: Any, memory: Any, sign: Any) -> None:
+    """Turn every past state by its own angle, to the lab (sign +1) or to the frame (sign -1)."""
+    n = memory.factored_at.shape[0]
+    differences, rows = memory.differences, memory.count[ORDER] + 3
+    swap_differences_and_values(differences, rows)
+    for j in range(rows):
+        rotate(system, differences[j, :n], sign * differences[j, n], differences[j, :n])
+    swap_differences_and_values(differences, rows)
+
+
+@kernel
+def swap_differences_and_values(differences: Any, rows: Any) -> None:
+    """Turn backward differences into past values, or back: the map is its own inverse."""
+    for first in range(1, rows):
+        for j in range(rows - 1, first - 1, -1):
+            for i in range(differences.shape[1]):
+                differences[j, i] = differences[j - 1, i] - differences[j, i]

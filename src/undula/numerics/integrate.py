@@ -1,0 +1,166 @@
+"""The time loop: steps until every asked time is reached, compiled end to end.
+
+`advance` works on a `Memory` in place and comes back when the asked times are filled, when a number
+of steps is done (so that the caller can show progress or stop), when the list of sections is full,
+or when no step can succeed. Calling it again goes on as if it had never come back.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from undula.compiled import entry, kernel
+from undula.numerics.control import (
+    SHORTEST_FACTOR,
+    SAFETY,
+    accept,
+    change_step,
+    choose_frame,
+    factor_for,
+    plan,
+)
+from undula.numerics.memory import (
+    DISPLACEMENT,
+    FAILED,
+    IN_FRAME,
+    LARGEST_STEP,
+    ORDER,
+    PLANNED_FACTOR,
+    PLANNED_ORDER,
+    REJECTED,
+    SHAPE_SPEED,
+    SMALLEST_STEP,
+    SPEED,
+    STEP,
+    STEPS,
+    STORING_RATE,
+    TIME,
+    TURN_RATE,
+)
+from undula.numerics.output import energy_maximum, interpolate
+from undula.numerics.results import Status
+from undula.numerics.stepping import (
+    correct,
+    integrate_rates,
+    predict,
+    root_mean_square,
+    workspace,
+)
+from undula.numerics.system import generator
+
+_DONE, _PAUSED = Status.DONE.value, Status.PAUSED.value
+_TOO_SHORT, _NOT_FINITE = Status.STEP_TOO_SHORT.value, Status.NOT_FINITE.value
+
+#: A step that does not converge with a fresh matrix is made shorter by this factor.
+FAILURE_FACTOR = 0.3
+#: The shortest step, as a fraction of the time reached (round-off) and in absolute terms.
+SHORTEST_RELATIVE, SHORTEST_ABSOLUTE = 1e-14, 1e-18
+
+
+@kernel
+def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
+    """Take one accepted step, as planned or shorter; return a `Status` value."""
+    if options.frame == 1:
+        choose_frame(system, memory)
+    memory.count[ORDER] = memory.count[PLANNED_ORDER]
+    change_step(memory, memory.real[PLANNED_FACTOR])
+    while True:
+        if memory.real[STEP] < SHORTEST_ABSOLUTE + SHORTEST_RELATIVE * abs(memory.real[TIME]):
+            return _TOO_SHORT
+        c, scale = predict(memory, options, work)
+        if not np.isfinite(scale):
+            return _NOT_FINITE
+        if not correct(system, memory, options, work, c, scale):
+            memory.count[FAILED] += 1
+            change_step(memory, FAILURE_FACTOR)
+            continue
+        integrate_rates(system, memory, work, c)
+        error = step_error(memory, options, work) / scale
+        if error <= 1.0:
+            break
+        memory.count[REJECTED] += 1
+        factor = SAFETY * factor_for(error, memory.count[ORDER])
+        change_step(memory, max(SHORTEST_FACTOR, factor))
+    accept(memory, work)
+    memory.real[TIME] += memory.real[STEP]
+    memory.count[STEPS] += 1
+    memory.real[SMALLEST_STEP] = min(memory.real[SMALLEST_STEP], memory.real[STEP])
+    memory.real[LARGEST_STEP] = max(memory.real[LARGEST_STEP], memory.real[STEP])
+    plan(memory, options, error, scale)
+    return _DONE
+
+
+@kernel
+def step_error(memory: Any, options: Any, work: Any) -> Any:
+    """Return the estimated error of the step's positions, in the frame with that of its angle."""
+    n = work.y.shape[0]
+    error = root_mean_square(work.change[:n], options.mask)
+    if memory.count[IN_FRAME] == 1:
+        lever = root_mean_square(work.turning, options.mask)
+        error = math.hypot(error, lever * work.change[n])
+    return error * options.error[memory.count[ORDER]]
+
+
+@kernel
+def note_rates(system: Any, memory: Any, options: Any, work: Any) -> None:
+    """Note how fast the system moves, turns, changes shape and stores energy after a step."""
+    n, c = work.y.shape[0], memory.real[STEP] / options.alpha[memory.count[ORDER]]
+    rate = (work.change[n] + work.psi[n]) / c
+    generator(system, work.y, work.turning)
+    memory.real[TURN_RATE] = rate
+    memory.real[SPEED] = root_mean_square(work.w, options.mask) / c
+    for i in range(n):
+        work.w[i] -= c * rate * work.turning[i]
+        work.y[i] -= options.reference[i]
+    memory.real[SHAPE_SPEED] = root_mean_square(work.w, options.mask) / c
+    memory.real[DISPLACEMENT] = root_mean_square(work.y, options.mask)
+    stored = work.change[n + 1] - work.change[n + 2] + work.psi[n + 1] - work.psi[n + 2]
+    memory.real[STORING_RATE] = stored / c
+
+
+@entry
+def advance(
+    system: Any, memory: Any, options: Any, times: Any, states: Any, sections: Any, most_steps: Any
+) -> Any:
+    """Step on until the states at all `times` are known.
+
+    Parameters
+    ----------
+    system, memory, options
+        See `undula.numerics.system`, `memory` and `stepping`; the memory is changed in place.
+    times : ndarray, shape (m,)
+        Increasing times, none before the last step of the memory.
+    states : ndarray, shape (m, n + RATES)
+        Receives unknowns (in the lab frame) and integrals at these times.
+    sections : ndarray, shape (s, 1 + n + RATES)
+        Receives time and state whenever the stored energy passes a maximum; the loop comes back
+        when it is full.
+    most_steps : int
+        The loop comes back after so many steps.
+
+    Returns
+    -------
+    status, filled, found : int
+        A `Status` value, the number of times and of sections filled.
+    """
+    work = workspace(memory.factored_at.shape[0])
+    filled, found, taken = 0, 0, 0
+    while True:
+        while filled < times.shape[0] and times[filled] <= memory.real[TIME]:
+            interpolate(system, memory, times[filled], states[filled])
+            filled += 1
+        if filled == times.shape[0]:
+            return _DONE, filled, found
+        if taken == most_steps or found == sections.shape[0] > 0:
+            return _PAUSED, filled, found
+        status = take_step(system, memory, options, work)
+        if status != _DONE:
+            return status, filled, found
+        taken += 1
+        storing = memory.real[STORING_RATE]
+        note_rates(system, memory, options, work)
+        if storing > 0.0 >= memory.real[STORING_RATE] and found < sections.shape[0]:
+            sections[found, 0] = energy_maximum(memory)
+            interpolate(system, memory, sections[found, 0], sections[found, 1:])
+            found += 1

@@ -1,0 +1,51 @@
+"""States between steps: the interpolating polynomial of the last step, and sections through it."""
+
+from typing import Any
+
+from undula.compiled import kernel
+from undula.numerics.memory import IN_FRAME, ORDER, STEP, TIME
+from undula.numerics.system import rotate
+
+#: Halvings of a step to find a section: 2^-40 of a step is far below its error.
+HALVINGS = 40
+
+
+@kernel
+def interpolate(system: Any, memory: Any, time: Any, out: Any) -> None:
+    """Write the unknowns, in the lab frame, and the integrals at `time` to out (n + RATES,)."""
+    step, n = memory.real[STEP], memory.factored_at.shape[0]
+    out[:] = memory.differences[0]
+    factor = 1.0
+    for j in range(memory.count[ORDER]):
+        factor *= (time - memory.real[TIME] + j * step) / (step * (j + 1))
+        for i in range(out.shape[0]):
+            out[i] += factor * memory.differences[j + 1, i]
+    if memory.count[IN_FRAME] == 1:
+        rotate(system, out[:n], out[n], out[:n])
+
+
+@kernel
+def storing_rate(memory: Any, time: Any) -> Any:
+    """Return the rate of energy storage, power put in less power dissipated, at `time`."""
+    step, n = memory.real[STEP], memory.factored_at.shape[0]
+    factor, slope, total = 1.0, 0.0, 0.0
+    for j in range(memory.count[ORDER]):
+        position, span = time - memory.real[TIME] + j * step, step * (j + 1)
+        slope = (slope * position + factor) / span
+        factor *= position / span
+        total += slope * (memory.differences[j + 1, n + 1] - memory.differences[j + 1, n + 2])
+    return total
+
+
+@kernel
+def energy_maximum(memory: Any) -> Any:
+    """Return the time within the last step at which the storing of energy turned to releasing."""
+    early, late = memory.real[TIME] - memory.real[STEP], memory.real[TIME]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (early + late)
+        if storing_rate(memory, middle) > 0.0:
+            early = middle
+        else:
+            late = middle
+    return 0.5 * (early + late)
+

@@ -1,0 +1,288 @@
+"""One implicit step: predict, solve by a simplified Newton method, estimate the error.
+
+Errors and corrections are measured by one norm, the root mean square over positions divided by
+
+    scale = atol + rtol * (root mean square distance of the positions from the reference state).
+
+It does not change when the system turns, and a small motion is computed as accurately as a large one.
+
+A frozen Newton matrix goes stale because the system turns rather than because time passes. It is
+therefore used in the orientation that it was made in: the residual is turned back, the solution
+forth. In the co-rotating frame positions are y = Q(-angle) x and the turning rate Omega is one more
+unknown, fixed by the condition that the motion in the frame has no component along the rotation:
+
+    R(y) (w + c Omega S y) = c f(y, z),    <S y, w> = 0,    w = c dy/dt.
+
+The angle is integrated beside, like the power put in and the power dissipated, by the same formula.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from undula.compiled import kernel
+from undula.numerics.memory import (
+    CONTRACTION,
+    FACTORED_ANGLE,
+    FACTORED_C,
+    FACTORISATIONS,
+    IN_FRAME,
+    ORDER,
+    SOLVES,
+    STEP,
+    TURN_RATE,
+)
+from undula.numerics.schemes import BackwardDifferentiation
+from undula.numerics.system import (
+    RATES,
+    factor,
+    generator,
+    matrix,
+    rates,
+    residual,
+    rotate,
+    solve,
+    weigh,
+)
+
+#: Corrections a step may take before its matrix is made anew or its length is cut.
+MOST_CORRECTIONS = 5
+#: A correction that grows by this factor diverges.
+DIVERGENCE = 2.0
+#: What a converging iteration may leave, as a fraction of the error allowed in a step.
+NEWTON_FRACTION = 0.05
+#: The remembered contraction is forgotten at most this fast, as in CVODE.
+CONTRACTION_MEMORY = 0.3
+
+
+class Options(NamedTuple):
+    """What a stepper is told: tolerances, the norm, and the tables of its scheme."""
+
+    rtol: float
+    atol: float
+    mask: np.ndarray  # (n,) 1 for positions, 0 for multipliers
+    reference: np.ndarray  # (n,) the state that displacements are measured from
+    stale_after: float  # a matrix is stale when a position has moved so far since
+    longest_step: float
+    frame: int  # 0 lab, 1 co-rotating when it pays
+    gamma: np.ndarray
+    alpha: np.ndarray
+    error: np.ndarray
+
+
+class Work(NamedTuple):
+    """Scratch of a step, so that a step allocates nothing."""
+
+    predicted: np.ndarray  # (n + RATES,)
+    psi: np.ndarray  # (n + RATES,) w = y - predicted + psi
+    change: np.ndarray  # (n + RATES,) y - predicted
+    y: np.ndarray  # (n,)
+    w: np.ndarray
+    turning: np.ndarray  # S y
+    phase: np.ndarray  # S psi: a step without rotation in the frame has <S psi, y> = 0
+    correction: np.ndarray
+
+
+def options(
+    scheme: BackwardDifferentiation,
+    mask: np.ndarray,
+    reference: np.ndarray,
+    *,
+    rtol: float,
+    atol: float,
+    stale_after: float,
+    longest_step: float,
+    frame: bool,
+) -> Options:
+    """Gather the options of a stepper of `scheme`."""
+    gamma, alpha, error = scheme.tables()
+    return Options(
+        rtol, atol, mask, reference, stale_after, longest_step, int(frame), gamma, alpha, error
+    )
+
+
+@kernel
+def workspace(n: Any) -> Any:
+    """Return the scratch of a stepper of n unknowns."""
+    m = n + RATES
+    return Work(
+        np.zeros(m),
+        np.zeros(m),
+        np.zeros(m),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+    )
+
+
+@kernel
+def root_mean_square(values: Any, mask: Any) -> Any:
+    """Return the root mean square of `values` over the positions."""
+    total, weight = 0.0, 0.0
+    for i in range(mask.shape[0]):
+        total += mask[i] * values[i] * values[i]
+        weight += mask[i]
+    return math.sqrt(total / weight)
+
+
+@kernel
+def dot(a: Any, b: Any, mask: Any) -> Any:
+    """Return the scalar product of a and b over the positions."""
+    total = 0.0
+    for i in range(mask.shape[0]):
+        total += mask[i] * a[i] * b[i]
+    return total
+
+
+@kernel
+def predict(memory: Any, options: Any, work: Any) -> Any:
+    """Extrapolate to the end of the step; return its parameter c and the scale of its errors."""
+    order, n = memory.count[ORDER], work.y.shape[0]
+    differences = memory.differences
+    inverse = 1.0 / options.alpha[order]
+    work.predicted[:] = differences[0]
+    work.psi[:] = 0.0
+    for j in range(1, order + 1):
+        factor = options.gamma[j] * inverse
+        for i in range(differences.shape[1]):
+            work.predicted[i] += differences[j, i]
+            work.psi[i] += factor * differences[j, i]
+    work.y[:] = work.predicted[:n]
+    for i in range(n):
+        work.w[i] = work.y[i] - options.reference[i]
+    scale = options.atol + options.rtol * root_mean_square(work.w, options.mask)
+    return memory.real[STEP] * inverse, scale
+
+
+@kernel
+def spread(system: Any, work: Any, in_frame: Any, turn: Any) -> None:
+    """Bring y, w and S y up to date with the change found so far and the turn c Omega."""
+    n = work.y.shape[0]
+    for i in range(n):
+        work.y[i] = work.predicted[i] + work.change[i]
+        work.w[i] = work.change[i] + work.psi[i]
+    if in_frame:
+        generator(system, work.y, work.turning)
+        for i in range(n):
+            work.w[i] += turn * work.turning[i]
+
+
+@kernel
+def is_stale(system: Any, memory: Any, options: Any, work: Any, c: Any, angle: Any) -> Any:
+    """Tell whether the factored matrix is no longer fit for the step at hand."""
+    if abs(c / memory.real[FACTORED_C] - 1.0) > 1e-12:
+        return True
+    rotate(system, work.y, -angle, work.correction)
+    for i in range(work.y.shape[0]):
+        moved = abs(work.correction[i] - memory.factored_at[i]) * options.mask[i]
+        if not moved <= options.stale_after:
+            return True
+    return False
+
+
+@kernel
+def refactor(system: Any, memory: Any, work: Any, c: Any, turn: Any) -> Any:
+    """Make and factor the Newton matrix at the state in `work`; False where it is singular."""
+    in_frame = memory.count[IN_FRAME] == 1
+    matrix(system, work.y, work.w, c, turn if in_frame else 0.0, memory.factors)
+    memory.factored_at[:] = work.y
+    memory.real[FACTORED_C] = c
+    memory.real[FACTORED_ANGLE] = work.predicted[work.y.shape[0]]
+    memory.count[FACTORISATIONS] += 1
+    if not factor(system, memory.factors):
+        memory.real[FACTORED_C] = 0.0
+        return False
+    if in_frame:
+        weigh(system, work.y, work.turning, memory.border)
+        solve(system, memory.factors, memory.border)
+        memory.count[SOLVES] += 1
+    return True
+
+
+@kernel
+def one_correction(
+    system: Any, memory: Any, options: Any, work: Any, c: Any, turn: Any, angle: Any
+) -> Any:
+    """Apply one Newton correction; return its root mean square and the new turn."""
+    n = work.y.shape[0]
+    in_frame = memory.count[IN_FRAME] == 1
+    delta = work.correction
+    residual(system, work.y, work.w, c, delta)
+    if angle != 0.0:
+        rotate(system, delta, -angle, delta)
+    solve(system, memory.factors, delta)
+    memory.count[SOLVES] += 1
+    if angle != 0.0:
+        rotate(system, delta, angle, delta)
+    if in_frame:
+        slip = dot(work.phase, work.y, options.mask) - dot(work.phase, delta, options.mask)
+        turn_change = slip / dot(work.phase, memory.border, options.mask)
+        turn += turn_change
+        for i in range(n):
+            delta[i] += turn_change * memory.border[i]
+    for i in range(n):
+        work.change[i] -= delta[i]
+    return root_mean_square(delta, options.mask), turn
+
+
+@kernel
+def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: Any) -> Any:
+    """Solve for the end of the step; return whether it converged, and the turn c Omega."""
+    in_frame = memory.count[IN_FRAME] == 1
+    n = work.y.shape[0]
+    turn = c * memory.real[TURN_RATE] if in_frame else 0.0
+    if in_frame:
+        for i in range(n):
+            work.y[i] = work.predicted[i] - work.psi[i]
+        generator(system, work.y, work.phase)
+    for attempt in range(2):
+        work.change[:] = 0.0
+        turn = c * memory.real[TURN_RATE] if in_frame else 0.0
+        spread(system, work, in_frame, turn)
+        angle = 0.0 if in_frame else work.predicted[n] - memory.real[FACTORED_ANGLE]
+        fresh = attempt == 1 or is_stale(system, memory, options, work, c, angle)
+        if fresh:
+            angle = 0.0
+            if not refactor(system, memory, work, c, turn):
+                break
+        if iterate(system, memory, options, work, c, scale, turn, angle):
+            return True
+        memory.real[CONTRACTION] = 1.0
+        if fresh:
+            break
+    return False
+
+
+@kernel
+def iterate(
+    system: Any, memory: Any, options: Any, work: Any, c: Any, scale: Any, turn: Any, angle: Any
+) -> Any:
+    """Correct with one factored matrix until the rest is negligible; False where it is not."""
+    in_frame = memory.count[IN_FRAME] == 1
+    previous = 0.0
+    for m in range(MOST_CORRECTIONS):
+        size, turn = one_correction(system, memory, options, work, c, turn, angle)
+        if not np.isfinite(size) or (m > 0 and size > DIVERGENCE * previous):
+            return False
+        if m > 0 and previous > 0.0:
+            remembered = CONTRACTION_MEMORY * memory.real[CONTRACTION]
+            memory.real[CONTRACTION] = max(remembered, size / previous)
+        previous = size
+        spread(system, work, in_frame, turn)
+        if size * min(1.0, memory.real[CONTRACTION]) <= NEWTON_FRACTION * scale:
+            return True
+    return False
+
+
+@kernel
+def integrate_rates(system: Any, memory: Any, work: Any, c: Any) -> None:
+    """Advance the angle and the integrals of power by the formula that moved the positions."""
+    n = work.y.shape[0]
+    for i in range(n):
+        work.correction[i] = work.w[i] / c
+    rates(system, work.y, work.correction, work.change[n:])
+    for i in range(n, n + RATES):
+        work.change[i] = c * work.change[i] - work.psi[i]
