@@ -1,0 +1,1 @@
+"""The physics: each model with its right-hand side, Jacobian, energy and symmetry."""

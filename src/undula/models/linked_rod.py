@@ -1,0 +1,175 @@
+"""What every linked rod can tell about a state; its kinds differ in their tables only."""
+
+import dataclasses
+from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from undula.arrays import Array, Nodes, State
+from undula.errors import InputError
+from undula.models.model import Energetics
+from undula.models.rod_matrix import exact_derivative
+from undula.models.rod_velocity import observe, rate_of_change
+from undula.numerics.banded import to_dense
+
+
+class LinkedRod(ABC):
+    """A model made of links: implements `undula.models.model.Model` on top of its tables."""
+
+    @cached_property
+    @abstractmethod
+    def system(self) -> Any:
+        """The tables: one of `undula.models.rod.RODS`."""
+
+    @property
+    def dimension(self) -> int:
+        """Coordinates of a node in a state: 3, or 2 if confined to a plane."""
+        return int(self.system.dimension)
+
+    @property
+    def links(self) -> int:
+        """Number of links N."""
+        return int(self.system.joint.size)
+
+    @property
+    def size(self) -> int:
+        """Number of entries of a state."""
+        return self.links * self.dimension
+
+    @cached_property
+    def position_mask(self) -> Array:
+        """1 at the positions, 0 at the multipliers of the integrator's vector."""
+        mask = np.ones((self.links, self.dimension + 1))
+        mask[:, -1] = 0.0
+        return mask.ravel()
+
+    def positions(self, unknowns: Array) -> State:
+        """Return the state in the integrator's vector; further axes in front are kept."""
+        by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self.dimension + 1)
+        return by_node[..., :-1].reshape(*unknowns.shape[:-1], self.size)
+
+    def unknowns(self, x: State) -> Array:
+        """Return the integrator's vector: positions and the multipliers that belong to them."""
+        return self._moving(x)[0]
+
+    def rhs(self, x: State) -> State:
+        """Return dx/dt."""
+        return self.positions(self._moving(x)[1])
+
+    def _moving(self, x: State) -> tuple[Array, Array]:
+        """Return the integrator's vector at x and its velocity."""
+        y = np.zeros((self.links, self.dimension + 1))
+        y[:, :-1] = np.asarray(x, dtype=float).reshape(self.links, self.dimension)
+        unknowns, velocity = y.ravel(), np.zeros(y.size)
+        rate_of_change(self.system, unknowns, velocity)
+        return unknowns, velocity
+
+    def jacobian(self, x: State) -> Array:
+        """Return d rhs / dx, shape (size, size), from the derivative of R v = f and of the constraint."""
+        y, v = self._moving(x)
+        d, m, n = self.dimension, self.dimension + 1, y.size
+        moving = self.position_mask == 1.0
+        band = np.zeros((n, 6 * m - 1))
+        exact_derivative(self.system, y, v, 1.0, 0.0, band)
+        full = to_dense(band)
+        band[:] = 0.0
+        exact_derivative(self.system, y, np.zeros(n), 0.0, 0.0, band)
+        drag = to_dense(band)
+        forces = full - drag
+        forces[~moving] = 0.0
+        implicit = np.where(moving[None, :], drag, full)
+        right = -forces[:, moving]
+        if self.system.extensible:
+            implicit[np.ix_(~moving, moving)] = 0.0
+            right[~moving] = -full[np.ix_(~moving, moving)]
+        else:
+            right[~moving] = -self._tangent_change(v, d, m)[:, moving]
+        return np.linalg.solve(implicit, right)[moving]
+
+    def _tangent_change(self, v: Array, d: int, m: int) -> Array:
+        """Return the derivative of e_i . (v_i - v_{i-1}) / h^2 by positions, at fixed v."""
+        change = np.zeros((self.links, self.links * m))
+        stretching = np.diff(v.reshape(self.links, m)[:, :d], axis=0, prepend=0.0)
+        stretching /= self.system.link**2
+        for i in range(self.links):
+            change[i, m * i : m * i + d] = stretching[i]
+            if i > 0:
+                change[i, m * (i - 1) : m * (i - 1) + d] = -stretching[i]
+        return change
+
+    def energy(self, x: State) -> float:
+        """Return the elastic energy."""
+        observed = self.observe(np.atleast_2d(self.unknowns(x)))
+        return float(observed.bending_energy[0] + observed.stretching_energy[0])
+
+    def power(self, x: State) -> tuple[float, float]:
+        """Return the power put in by the load and the power dissipated."""
+        observed = self.observe(np.atleast_2d(self.unknowns(x)))
+        return float(observed.active_power[0]), float(observed.dissipation[0])
+
+    def observe(self, unknowns: Array) -> Energetics:
+        """Return energies and powers of the rows of `unknowns` (m, n)."""
+        out = np.empty((unknowns.shape[0], 4))
+        observe(self.system, np.ascontiguousarray(unknowns), out)
+        return Energetics(*out.T)
+
+    def straight(self) -> State:
+        """Return the straight state along the axis, an equilibrium."""
+        x = np.zeros((self.links, self.dimension))
+        x[:, -1] = np.arange(1, self.links + 1) / self.links
+        return x.ravel()
+
+    def nodes(self, x: State) -> Nodes:
+        """Return the positions of all nodes in space, base first; further axes in front are kept."""
+        x = np.asarray(x).reshape(*np.shape(x)[:-1], self.links, self.dimension)
+        nodes = np.zeros((*x.shape[:-2], self.links + 1, 3))
+        nodes[..., 1:, self._axes] = x
+        return nodes
+
+    def from_nodes(self, nodes: Nodes) -> State:
+        """Return the state whose nodes, of shape (N + 1, 3), these are."""
+        nodes = np.asarray(nodes, dtype=float)
+        if nodes.shape != (self.links + 1, 3) or not np.isfinite(nodes).all():
+            raise InputError(
+                f"nodes of shape {nodes.shape} are no state of a model of {self.links} links;"
+                f" give finite values of shape {(self.links + 1, 3)}"
+            )
+        return nodes[1:, self._axes].ravel()
+
+    @property
+    def _axes(self) -> list[int]:
+        return [0, 1, 2] if self.dimension == 3 else [0, 2]
+
+    def rotate(self, x: State, angle: float) -> State:
+        """Return the state turned about the axis by an angle [rad]; a confined model refuses."""
+        if self.dimension == 2:
+            raise InputError("a confined model stays in its plane: it cannot be rotated")
+        turned = np.array(x, dtype=float).reshape(self.links, 3)
+        cosine, sine = np.cos(angle), np.sin(angle)
+        turned[:, :2] = turned[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+        return turned.ravel()
+
+    def rotation_generator(self, x: State) -> State:
+        """Return the velocity of a unit rate of rotation about the axis; 0 if confined."""
+        velocity = np.zeros((self.links, self.dimension))
+        if self.dimension == 3:
+            by_node = np.reshape(x, velocity.shape)
+            velocity[:, 0], velocity[:, 1] = -by_node[:, 1], by_node[:, 0]
+        return velocity.ravel()
+
+    def reflect(self, x: State) -> State:
+        """Return the state reflected in a plane through the axis (x to -x)."""
+        reflected = np.array(x, dtype=float).reshape(self.links, self.dimension)
+        reflected[:, 0] *= -1.0
+        return reflected.ravel()
+
+    def with_(self, **changes: Any) -> Self:
+        """Return the model with other values of its own fields or of its load's, such as force."""
+        own = {field.name for field in dataclasses.fields(self)}  # type: ignore[arg-type]
+        mine = {name: value for name, value in changes.items() if name in own}
+        rest = {name: value for name, value in changes.items() if name not in own}
+        if rest:
+            mine["load"] = dataclasses.replace(mine.get("load", self.load), **rest)  # type: ignore[attr-defined]
+        return dataclasses.replace(self, **mine)  # type: ignore[type-var]

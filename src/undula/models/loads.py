@@ -1,0 +1,142 @@
+"""Axial follower forces: how much of the total force each link carries, and where.
+
+A load has a total compressive force F and a density f_a(s) >= 0 along the filament, s in [0, 1], acting
+against the tangent: f = -f_a t. On a chain of links each link carries the integral of f_a over it,
+shared by its two nodes so that the first moment is exact as well. A concentrated force is shared
+linearly by the two links whose midpoints enclose it, so that its direction, too, is accurate to
+second order; beyond the last midpoint the last link carries it alone.
+
+Source of the profiles: Ling, Guo & Kanso (2018), equations for linear, concentrated and power-law forces.
+"""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from undula.arrays import Links, Points
+from undula.errors import InputError
+
+
+@dataclass(frozen=True)
+class Load:
+    """An axial follower force.
+
+    Attributes
+    ----------
+    force : float
+        Total compressive force F [B/L^2], finite, at least 0.
+    """
+
+    force: float
+
+    def __post_init__(self) -> None:
+        """Refuse values that are no load."""
+        _require(self, "force", 0.0, np.inf, "a finite number, at least 0")
+
+    @abstractmethod
+    def force_below(self, s: Points) -> Points:
+        """Return the force carried by [0, s], the integral of f_a."""
+
+    @abstractmethod
+    def moment_below(self, s: Points) -> Points:
+        """Return the first moment about the base carried by [0, s], the integral of s f_a."""
+
+    def shares(self, links: int) -> tuple[Links, Links]:
+        """Return the forces (head, foot) that each of `links` links puts on its outer and inner node.
+
+        Both have shape (links,) and act along minus the link's tangent.
+        """
+        s = np.linspace(0.0, 1.0, links + 1)
+        force = np.diff(self.force_below(s))
+        head = (np.diff(self.moment_below(s)) - s[:-1] * force) * links
+        return head, force - head
+
+
+@dataclass(frozen=True)
+class PointLoad(Load):
+    """A force concentrated at arc length `position` in (0, 1] [L]."""
+
+    position: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse values that are no load."""
+        super().__post_init__()
+        _require(self, "position", np.nextafter(0.0, 1.0), 1.0, "a number in (0, 1]")
+
+    def force_below(self, s: Points) -> Points:
+        """Return F beyond the position, 0 before it."""
+        return np.where(s >= self.position, self.force, 0.0)
+
+    def moment_below(self, s: Points) -> Points:
+        """Return F s_a beyond the position, 0 before it."""
+        return self.position * self.force_below(s)
+
+    def shares(self, links: int) -> tuple[Links, Links]:
+        """Share the force between the links whose midpoints enclose it."""
+        head, foot = np.zeros(links), np.zeros(links)
+        place = self.position * links - 0.5  # in links, from the first midpoint
+        if 0.0 < place < links - 1.0:
+            lower = int(place)
+            for link, part in ((lower, 1.0 - (place - lower)), (lower + 1, place - lower)):
+                head[link] = foot[link] = 0.5 * part * self.force
+        else:
+            link = 0 if place <= 0.0 else links - 1
+            head[link] = (self.position * links - link) * self.force
+            foot[link] = self.force - head[link]
+        return head, foot
+
+
+@dataclass(frozen=True)
+class TipLoad(PointLoad):
+    """A force concentrated at the free end: a point load at s = 1."""
+
+    def __init__(self, force: float) -> None:
+        super().__init__(force, 1.0)
+
+
+@dataclass(frozen=True)
+class LinearLoad(Load):
+    """A density F [1 + slope (2 s - 1)], with slope in [-1, 1]."""
+
+    slope: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse values that are no load."""
+        super().__post_init__()
+        _require(self, "slope", -1.0, 1.0, "a number in [-1, 1]")
+
+    def force_below(self, s: Points) -> Points:
+        """Return F [s + slope (s^2 - s)]."""
+        return self.force * (s + self.slope * (s * s - s))
+
+    def moment_below(self, s: Points) -> Points:
+        """Return F [s^2 / 2 + slope (2 s^3 / 3 - s^2 / 2)]."""
+        return self.force * (0.5 * s**2 + self.slope * (2.0 / 3.0 * s**3 - 0.5 * s**2))
+
+
+@dataclass(frozen=True)
+class PowerLoad(Load):
+    """A density F (p + 1) s^p, with exponent p at least 0."""
+
+    exponent: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse values that are no load."""
+        super().__post_init__()
+        _require(self, "exponent", 0.0, np.inf, "a finite number, at least 0")
+
+    def force_below(self, s: Points) -> Points:
+        """Return F s^(p+1)."""
+        return self.force * s ** (self.exponent + 1.0)
+
+    def moment_below(self, s: Points) -> Points:
+        """Return F (p + 1) / (p + 2) s^(p+2)."""
+        p = self.exponent
+        return self.force * (p + 1.0) / (p + 2.0) * s ** (p + 2.0)
+
+
+def _require(load: Load, name: str, lowest: float, highest: float, wanted: str) -> None:
+    value = getattr(load, name)
+    if not (lowest <= value <= highest and np.isfinite(value)):
+        raise InputError(f"{type(load).__name__}: {name} = {value} has to be {wanted}")

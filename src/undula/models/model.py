@@ -1,0 +1,88 @@
+"""The contract between models and everything else: what an analysis may ask of any model.
+
+A state x (size,) holds the positions of the free nodes, node by node, in the coordinates in which the
+model moves: x, y, z in space, or x, z for a model that is confined to a plane. Everything is
+dimensionless. The constraint forces follow from the state and are not part of it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol, Self
+
+from undula.arrays import Array, Nodes, State
+
+
+@dataclass(frozen=True)
+class Energetics:
+    """Energies [B/L] and powers [B/(L T)] of a row of states, each of shape (m,)."""
+
+    bending_energy: Array
+    stretching_energy: Array
+    active_power: Array
+    dissipation: Array
+
+
+class Model(Protocol):
+    """A model of a clamped filament or chain, frozen."""
+
+    @property
+    def size(self) -> int:
+        """Number of entries of a state."""
+
+    @property
+    def dimension(self) -> int:
+        """Coordinates of a node in a state: 3, or 2 if confined to a plane."""
+
+    @property
+    def system(self) -> Any:
+        """The equations as the integrator wants them, see `undula.numerics.system`."""
+
+    def unknowns(self, x: State) -> Array:
+        """Return the integrator's vector: positions and the multipliers that belong to them."""
+
+    def positions(self, unknowns: Array) -> State:
+        """Return the state in the integrator's vector; further axes in front are kept."""
+
+    @property
+    def position_mask(self) -> Array:
+        """1 at the positions, 0 at the multipliers of the integrator's vector."""
+
+    def straight(self) -> State:
+        """Return the straight state along the axis, an equilibrium."""
+
+    def rhs(self, x: State) -> State:
+        """Return dx/dt."""
+
+    def jacobian(self, x: State) -> Array:
+        """Return d rhs / dx, shape (size, size), exact."""
+
+    def energy(self, x: State) -> float:
+        """Return the elastic energy."""
+
+    def power(self, x: State) -> tuple[float, float]:
+        """Return the power put in by the load and the power dissipated."""
+
+    def observe(self, unknowns: Array) -> Energetics:
+        """Return energies and powers of rows of the integrator's vector, shape (m, n)."""
+
+    def nodes(self, x: State) -> Nodes:
+        """Return the positions of all nodes in space, base first; further axes in front are kept."""
+
+    def from_nodes(self, nodes: Nodes) -> State:
+        """Return the state whose nodes these are."""
+
+    def rotate(self, x: State, angle: float) -> State:
+        """Return the state turned about the axis; a confined model refuses."""
+
+    def rotation_generator(self, x: State) -> State:
+        """Return the velocity of a unit rate of rotation about the axis; 0 if confined."""
+
+    def reflect(self, x: State) -> State:
+        """Return the state reflected in a plane through the axis (x to -x)."""
+
+    def with_(self, **changes: Any) -> Self:
+        """Return the model with other values of its own fields or of its load's."""
+
+
+#: A start makes a state for a model.
+Start = Callable[[Model], State]

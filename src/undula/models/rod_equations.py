@@ -1,0 +1,194 @@
+"""Compiled equations of the linked rod: residual, drag, rates, rotation (see `undula.models.rod`)."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from undula.compiled import kernel
+from undula.models.joint import stiffening
+from undula.models.rod import RODS
+from undula.numerics.system import generator, implements, rates, residual, rotate, weigh
+
+
+@cache
+def tangents_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
+    """Return `tangents(system, y, t, l)`: link tangents t (N, d) and lengths l (N,)."""
+    d, m = dimension, dimension + 1
+
+    @kernel
+    def tangents(system: Any, y: Any, t: Any, length: Any) -> None:
+        inverse = 1.0 / system.link
+        for a in range(d):
+            t[0, a] = y[a] * inverse
+        for i in range(1, t.shape[0]):
+            for a in range(d):
+                t[i, a] = (y[m * i + a] - y[m * (i - 1) + a]) * inverse
+        for i in range(t.shape[0]):
+            length[i] = system.link
+        if extensible:
+            for i in range(t.shape[0]):
+                square = 0.0
+                for a in range(d):
+                    square += t[i, a] * t[i, a]
+                stretch = math.sqrt(square)
+                length[i] *= stretch
+                for a in range(d):
+                    t[i, a] /= stretch
+
+    return tangents
+
+
+@cache
+def cosine_kernel(dimension: int) -> Callable[..., Any]:
+    """Return `cosine(t, i)`: t_{i-1} . t_i, with the clamp's e_z before the first link."""
+    d = dimension
+
+    @kernel
+    def cosine(t: Any, i: Any) -> Any:
+        if i == 0:
+            return t[0, d - 1]
+        total = 0.0
+        for a in range(d):
+            total += t[i - 1, a] * t[i, a]
+        return total
+
+    return cosine
+
+
+@cache
+def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
+    """Return `mean_tangent(t, i, out)`: the drag's direction m at node i; gives 1/|t_i + t_{i+1}|."""
+    d = dimension
+
+    @kernel
+    def mean_tangent(t: Any, i: Any, out: Any) -> Any:
+        last = i == t.shape[0] - 1
+        square = 0.0
+        for a in range(d):
+            out[a] = t[i, a] if last else t[i, a] + t[i + 1, a]
+            square += out[a] * out[a]
+        inverse = 1.0 / math.sqrt(square)
+        for a in range(d):
+            out[a] *= inverse
+        return inverse
+
+    return mean_tangent
+
+
+def _register(rod: Any) -> None:
+    d, m, extensible = rod.dimension, rod.dimension + 1, rod.extensible
+    tangents, cosine = tangents_kernel(d, extensible), cosine_kernel(d)
+    mean_tangent = mean_tangent_kernel(d)
+
+    @implements(residual, rod)
+    def rod_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
+        n = system.joint.shape[0]
+        t, length = np.empty((n, d)), np.empty(n)
+        moment, next_moment = np.empty(d), np.empty(d)
+        mean, force = np.empty(d), np.zeros(d)
+        tangents(system, y, t, length)
+        shortfall = 0.0
+        bend = system.joint[0] * stiffening(cosine(t, 0))
+        for a in range(d):
+            moment[a] = bend * t[0, a]
+        moment[d - 1] -= bend
+        for i in range(n):
+            if extensible:
+                shortfall = bend * (1.0 - cosine(t, i))
+            bend = 0.0
+            for a in range(d):
+                next_moment[a] = 0.0
+            if i + 1 < n:
+                bend = system.joint[i + 1] * stiffening(cosine(t, i + 1))
+                for a in range(d):
+                    next_moment[a] = bend * (t[i + 1, a] - t[i, a])
+            multiplier = y[m * i + d]
+            for a in range(d):
+                link_force = (next_moment[a] - moment[a]) / length[i] - multiplier * t[i, a]
+                if i > 0:
+                    out[m * (i - 1) + a] += c * (link_force + system.foot[i] * t[i, a])
+                force[a] = link_force - system.head[i] * t[i, a]
+                moment[a] = next_moment[a]
+            mean_tangent(t, i, mean)
+            along = 0.0
+            for a in range(d):
+                along += mean[a] * w[m * i + a]
+            for a in range(d):
+                drag = system.weight[i] * (w[m * i + a] - system.lag * along * mean[a])
+                out[m * i + a] = drag - c * force[a]
+            if extensible:
+                if i + 1 < n:
+                    shortfall += bend * (1.0 - cosine(t, i + 1))
+                tension = multiplier + shortfall / length[i]
+                out[m * i + d] = length[i] / system.link - 1.0 - tension / system.tensile
+            else:
+                square = 0.0
+                for a in range(d):
+                    square += t[i, a] * t[i, a]
+                out[m * i + d] = 0.5 * (square - 1.0)
+
+    @implements(weigh, rod)
+    def rod_weigh(system: Any, y: Any, u: Any, out: Any) -> None:
+        n = system.joint.shape[0]
+        t, length, mean = np.empty((n, d)), np.empty(n), np.empty(d)
+        tangents(system, y, t, length)
+        for i in range(n):
+            mean_tangent(t, i, mean)
+            along = 0.0
+            for a in range(d):
+                along += mean[a] * u[m * i + a]
+            for a in range(d):
+                out[m * i + a] = system.weight[i] * (u[m * i + a] - system.lag * along * mean[a])
+            out[m * i + d] = 0.0
+
+    @implements(rates, rod)
+    def rod_rates(system: Any, y: Any, v: Any, out: Any) -> None:
+        n = system.joint.shape[0]
+        t, length, mean = np.empty((n, d)), np.empty(n), np.empty(d)
+        tangents(system, y, t, length)
+        spin = inertia = power = dissipation = 0.0
+        for i in range(n):
+            k = m * i
+            if d == 3:
+                spin += y[k] * v[k + 1] - y[k + 1] * v[k]
+                inertia += y[k] * y[k] + y[k + 1] * y[k + 1]
+            mean_tangent(t, i, mean)
+            along = square = 0.0
+            for a in range(d):
+                along += mean[a] * v[k + a]
+                square += v[k + a] * v[k + a]
+                power -= system.head[i] * t[i, a] * v[k + a]
+                if i > 0:
+                    power -= system.foot[i] * t[i, a] * v[k - m + a]
+            dissipation += system.weight[i] * (square - system.lag * along * along)
+        out[0] = spin / inertia if inertia > 0.0 else 0.0
+        out[1] = power
+        out[2] = dissipation
+
+    if d == 3:
+
+        @implements(generator, rod)
+        def rod_generator(system: Any, y: Any, out: Any) -> None:
+            for k in range(0, y.shape[0], 4):
+                x = y[k]
+                out[k] = -y[k + 1]
+                out[k + 1] = x
+                out[k + 2] = 0.0
+                out[k + 3] = 0.0
+
+        @implements(rotate, rod)
+        def rod_rotate(system: Any, y: Any, angle: Any, out: Any) -> None:
+            cosine, sine = math.cos(angle), math.sin(angle)
+            for k in range(0, y.shape[0], 4):
+                x, z = y[k], y[k + 1]
+                out[k] = cosine * x - sine * z
+                out[k + 1] = sine * x + cosine * z
+                out[k + 2] = y[k + 2]
+                out[k + 3] = y[k + 3]
+
+
+for _rod in RODS:
+    _register(_rod)

@@ -1,0 +1,143 @@
+"""Shapes that a motion starts from.
+
+Every shape is made from the inclination of the filament to its axis, a vector (a_x, a_y)(s) in radians,
+whose largest value is the amplitude; the tangent is the axis turned by it. So links have their exact
+length whatever the amplitude, and all starts meet the clamp.
+"""
+
+import numpy as np
+
+from undula.arrays import Array, Nodes, State
+from undula.errors import InputError
+from undula.models.model import Model
+
+#: Modes of the inclination in a random kick, and the decay of their size with their number.
+_KICK_MODES = 4
+
+
+def straight(model: Model) -> State:
+    """Return the straight state, which is an equilibrium."""
+    return model.straight()
+
+
+def kicked(model: Model, amplitude: float = 1e-2, *, seed: int = 1) -> State:
+    """Return a small random smooth shape, non-planar unless the model is confined.
+
+    Parameters
+    ----------
+    model : Model
+    amplitude : float
+        Largest inclination to the axis [rad].
+    seed : int
+        Seed of the random numbers: the same seed gives the same shape at any number of links.
+    """
+    random = np.random.default_rng(seed)
+    s = _link_midpoints(model)
+    modes = np.arange(1, _KICK_MODES + 1)
+    sizes = random.normal(size=(_KICK_MODES, 2)) / modes[:, None]
+    inclination = np.sin(np.pi * (modes - 0.5) * s[:, None]) @ sizes
+    return _inclined(model, inclination, amplitude)
+
+
+def planar(model: Model, amplitude: float = 1e-2, *, angle: float = 0.0) -> State:
+    """Return a smooth bend in the plane through the axis at azimuth `angle` [rad]."""
+    _refuse_angle(model, angle)
+    bend = np.sin(0.5 * np.pi * _link_midpoints(model))
+    return _inclined(model, bend[:, None] * _direction(angle), amplitude)
+
+
+def helix(model: Model, amplitude: float = 1e-2, *, right_handed: bool = True) -> State:
+    """Return a helix of one turn whose inclination grows from the clamp to the tip."""
+    if model.dimension == 2:
+        raise InputError("a confined model cannot start as a helix; take the planar start")
+    s = _link_midpoints(model)
+    azimuth = 2.0 * np.pi * s * (1.0 if right_handed else -1.0)
+    bend = np.sin(0.5 * np.pi * s)
+    inclination = bend[:, None] * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
+    return _inclined(model, inclination, amplitude)
+
+
+def mode(model: Model, amplitude: float = 1e-2, *, angle: float = 0.0) -> State:
+    """Return the leading linear mode of the straight state, in the plane at azimuth `angle` [rad].
+
+    The leading eigenvalue is the one with the largest real part; of a complex mode, whose phase is
+    free, the real part is taken where its imaginary part vanishes at the tip.
+    """
+    _refuse_angle(model, angle)
+    deflection = leading_mode(model)[1]
+    shape = np.real(deflection / deflection[-1])
+    slope = np.diff(shape, prepend=0.0)
+    return _inclined(model, slope[:, None] * _direction(angle), amplitude)
+
+
+def leading_mode(model: Model) -> tuple[complex, Array]:
+    """Return the leading eigenvalue of the straight state and its transverse mode (links,)."""
+    block = model.jacobian(model.straight())[:: model.dimension, :: model.dimension]
+    values, vectors = np.linalg.eig(block)
+    first = max(range(values.size), key=lambda k: (values[k].real, values[k].imag))
+    return complex(values[first]), vectors[:, first]
+
+
+def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
+    """Return the shape with the given nodes (M + 1, 3), carried over to the model's links.
+
+    The inclinations of its links are interpolated at the links of the model and, if an amplitude
+    other than 1 is asked, multiplied by it.
+    """
+    nodes = np.asarray(nodes, dtype=float)
+    if nodes.ndim != 2 or nodes.shape[0] < 2 or nodes.shape[1] != 3 or not np.isfinite(nodes).all():
+        raise InputError(f"nodes of shape {nodes.shape} are no shape; give finite values (M + 1, 3)")
+    links = np.diff(nodes, axis=0)
+    if links.shape[0] * model.dimension == model.size and amplitude == 1.0:
+        return _in_plane(model, nodes)
+    tangents = links / np.linalg.norm(links, axis=1, keepdims=True)
+    across = np.linalg.norm(tangents[:, :2], axis=1)
+    size = np.arctan2(across, tangents[:, 2])
+    factor = np.divide(size, across, out=np.ones_like(size), where=across > 0.0)
+    inclination = factor[:, None] * tangents[:, :2]
+    s = (np.arange(links.shape[0]) + 0.5) / links.shape[0]
+    at_links = [np.interp(_link_midpoints(model), s, inclination[:, a]) for a in range(2)]
+    return _bent(model, amplitude * np.stack(at_links, axis=-1))
+
+
+def _link_midpoints(model: Model) -> Array:
+    links = model.size // model.dimension
+    return (np.arange(links) + 0.5) / links
+
+
+def _direction(angle: float) -> Array:
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def _refuse_angle(model: Model, angle: float) -> None:
+    if model.dimension == 2 and angle != 0.0:
+        raise InputError("a confined model moves in the x-z plane; leave the angle at 0")
+
+
+def _inclined(model: Model, inclination: Array, amplitude: float) -> State:
+    """Return the shape with the given inclination (links, 2), scaled to its largest value."""
+    if not (np.isfinite(amplitude) and 0.0 < amplitude <= np.pi):
+        raise InputError(f"amplitude = {amplitude} has to be a number in (0, pi]")
+    if model.dimension == 2:
+        inclination = inclination * [1.0, 0.0]
+    return _bent(model, amplitude * inclination / np.linalg.norm(inclination, axis=1).max())
+
+
+def _bent(model: Model, inclination: Array) -> State:
+    size = np.linalg.norm(inclination, axis=1, keepdims=True)
+    tangents = np.concatenate([np.sinc(size / np.pi) * inclination, np.cos(size)], axis=1)
+    nodes = np.cumsum(tangents, axis=0) / tangents.shape[0]
+    return _in_plane(model, np.concatenate([np.zeros((1, 3)), nodes]))
+
+
+def _in_plane(model: Model, nodes: Nodes) -> State:
+    """Return the state with these nodes; a confined model takes only planar ones, turned to x-z."""
+    if model.dimension == 3:
+        return model.from_nodes(nodes)
+    far = nodes[np.argmax(np.linalg.norm(nodes[:, :2], axis=1)), :2]
+    direction = far / np.linalg.norm(far) if far.any() else np.array([1.0, 0.0])
+    across = nodes[:, 1] * direction[0] - nodes[:, 0] * direction[1]
+    if np.abs(across).max() > 1e-6:  # a millionth of the length: beyond the error of any run
+        raise InputError("a confined model cannot start from a shape that is not planar")
+    flat = np.stack([nodes[:, :2] @ direction, np.zeros(len(nodes)), nodes[:, 2]], axis=1)
+    return model.from_nodes(flat)
