@@ -1,0 +1,1 @@
+"""Questions about a trajectory or a model, answered with numerics on arrays."""

@@ -1,0 +1,53 @@
+"""The distance between two shapes when a turn about z does not count."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from undula.analysis.observables import arc_weights, transverse
+from undula.arrays import Array
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """How far apart two shapes are after the best turn about z.
+
+    Attributes
+    ----------
+    distance
+        RMS over the arc length of the distance between the nodes [L].
+    angle
+        The turn of the second shape that brings it nearest to the first [rad], in (-pi, pi].
+    """
+
+    distance: Array
+    angle: Array
+
+
+def aligned_distance(shape_a: Array, shape_b: Array) -> Alignment:
+    """Least distance between two shapes over all turns of the second about the z axis.
+
+    With a and b the transverse positions as complex numbers, the sum of |a - exp(i angle) b|^2 is
+    least at the argument of the sum of a times the conjugate of b; heights do not turn. If that sum
+    vanishes every turn is as good as any other, and the angle is 0.
+
+    Parameters
+    ----------
+    shape_a, shape_b
+        Node positions [L], shapes ``(..., N + 1, 3)`` that broadcast against each other: one shape
+        against one, or a trajectory against one.
+
+    Returns
+    -------
+    Alignment
+        Each part of the shape that is left of ``...``.
+    """
+    weights = arc_weights(shape_a.shape[-2])
+    a, b = transverse(shape_a), transverse(shape_b)
+    angle = np.angle(np.sum(weights * a * b.conj(), axis=-1))
+    sideways = np.abs(a - np.exp(1j * angle)[..., None] * b) ** 2
+    upright = (shape_a[..., 2] - shape_b[..., 2]) ** 2
+    square = np.sum(weights * (sideways + upright), axis=-1)
+    return Alignment(distance=np.asarray(np.sqrt(square)), angle=np.asarray(angle))

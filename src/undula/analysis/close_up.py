@@ -1,0 +1,44 @@
+"""The last periods of a run, sampled more finely than the rest.
+
+A long run has too few samples a period to tell what it does or to draw it. Its last periods are then
+computed once more from a mark that the simulation has kept, which gives the very same trajectory.
+"""
+
+import numpy as np
+
+from undula.analysis.motion import Motion
+from undula.analysis.settling import Watch
+from undula.analysis.simulation import Simulation
+
+#: A run with this many samples a period needs no close-up; one gets twice as many.
+ENOUGH_A_PERIOD = 24.0
+#: Periods in a close-up, if the marks reach back so far: frequencies gain with their square.
+PERIODS = 40.0
+#: Most samples of a close-up.
+MOST_SAMPLES = 8000
+
+
+def close_up(simulation: Simulation) -> Motion | None:
+    """Return the last periods of a simulation at fine intervals; None where its samples will do."""
+    fast, slow = _periods(simulation.watch, simulation.time)
+    if fast is None or simulation.interval * ENOUGH_A_PERIOD <= fast:
+        return None
+    end = simulation.time
+    start = max(end - PERIODS * slow, simulation.earliest_mark)
+    interval = max(0.5 * fast / ENOUGH_A_PERIOD, (end - start) / MOST_SAMPLES)
+    count = int((end - start) / interval)
+    if count < 2:
+        return None
+    times = end - interval * np.arange(count, -1, -1)
+    return Motion.of(simulation.model, times, simulation.again(times))
+
+
+def _periods(watch: Watch, duration: float) -> tuple[float | None, float]:
+    """Return the shortest and the longest period at work late in the run [T]."""
+    returns = [time for time, _ in watch.returns]
+    candidates = [watch.paces[-1].turn] if watch.paces else []
+    if len(returns) > 2:
+        beat = 2.0 * (returns[-1] - returns[0]) / (len(returns) - 1)  # two maxima of energy a beat
+        candidates.append(beat)
+    candidates = [period for period in candidates if period <= duration]
+    return (min(candidates), max(candidates)) if candidates else (None, duration)

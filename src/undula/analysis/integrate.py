@@ -1,0 +1,140 @@
+"""Run a model: the call behind `undula.integrate` and behind the command `undula run`."""
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+from typing import Literal
+
+from undula.analysis.run import Run
+from undula.analysis.simulation import Ending, Schedule, Simulation
+from undula.arrays import State
+from undula.models.model import Model
+from undula.numerics import memory as names
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run is: time reached and its end at the latest [T], length of the step, seconds."""
+
+    time: float
+    end: float
+    step: float
+    steps: int
+    seconds: float
+
+    @property
+    def rate(self) -> float:
+        """Time covered a second [T/s]."""
+        return self.time / self.seconds if self.seconds > 0.0 else 0.0
+
+    @property
+    def remaining(self) -> float:
+        """Seconds still to go, at the latest, at the rate so far."""
+        return (self.end - self.time) / self.rate if self.rate > 0.0 else float("inf")
+
+
+def integrate(
+    model: Model,
+    start: State,
+    *,
+    until: float | Literal["settled"] = 1.0,
+    limit: float = 10.0,
+    samples: int = 4000,
+    rtol: float = 1e-6,
+    atol: float = 1e-9,
+    budget: float = float("inf"),
+    progress: Callable[[Progress], None] | None = None,
+) -> Run:
+    """Integrate a model in time.
+
+    Parameters
+    ----------
+    model : Model
+        For example a `Filament`.
+    start : ndarray, shape (model.size,)
+        The state at time 0, for example ``kicked(model)``.
+    until : float or "settled"
+        Time at which the run ends [T], or until the motion repeats itself.
+    limit : float
+        Time at which a run to the settled state gives up [T].
+    samples : int
+        Number of stored samples; a run to the settled state has up to twice as many.
+    rtol, atol : float
+        Error tolerance of a step, relative to the RMS displacement from straight, and absolute [L].
+    budget : float
+        Seconds after which the run is ended with what it has.
+    progress : callable, optional
+        Called with a `Progress` every few milliseconds.
+
+    Returns
+    -------
+    Run
+        Also when the run was interrupted (Ctrl-C), ran out of its budget, or failed: its `ending`
+        says so.
+
+    Raises
+    ------
+    InputError
+        An argument is out of its range or the start is no state of the model.
+    """
+    schedule = Schedule(until=until, limit=limit, samples=samples, rtol=rtol, atol=atol)
+    simulation = Simulation.begin(model, start, schedule)
+    carry_on(simulation, budget=budget, progress=progress)
+    return Run.of(simulation)
+
+
+def carry_on(
+    simulation: Simulation,
+    *,
+    budget: float = float("inf"),
+    progress: Callable[[Progress], None] | None = None,
+) -> None:
+    """Advance a simulation to its end, or until Ctrl-C, or until the budget of seconds is spent."""
+    begun = time.monotonic()
+    with _interruptible() as interrupted:
+        while simulation.advance():
+            seconds = time.monotonic() - begun
+            if interrupted():
+                simulation.ending = Ending.INTERRUPTED
+                return
+            if seconds > budget:
+                simulation.ending = Ending.OUT_OF_TIME
+                return
+            if progress is not None:
+                progress(_progress(simulation, seconds))
+
+
+def _progress(simulation: Simulation, seconds: float) -> Progress:
+    memory = simulation.memory
+    return Progress(
+        time=simulation.time,
+        end=simulation.schedule.end,
+        step=float(memory.real[names.STEP]),
+        steps=int(memory.count[names.STEPS]),
+        seconds=seconds,
+    )
+
+
+@contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """Note SIGINT instead of raising KeyboardInterrupt amid a step; a second one does raise."""
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: False
+        return
+    noted = False
+    before = signal.getsignal(signal.SIGINT)
+
+    def note(signum: int, frame: FrameType | None) -> None:
+        nonlocal noted
+        noted = True
+        signal.signal(signum, before)
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield lambda: noted
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,61 @@
+"""How much of a motion does not repeat with a given period, at any rate of sampling.
+
+A frequency known from one signal is used on all nodes. Harmonics above half the sampling rate
+are not lost: they appear folded to lower frequencies, at known places, and are fitted there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from undula.analysis.planes import in_plane, plane_angle
+from undula.analysis.spectral import hann
+from undula.arrays import Instants, Shapes
+
+# In a violent flapping (tip force 300) the harmonics beyond the eighth are below one per cent.
+MAX_HARMONICS = 8
+# Two harmonics that fold to within this many windings over the window of each other are one to the
+# Hann weight; where they coincide the one stands for the other.
+RESOLUTION = 2.0
+
+
+def misfit(time: Instants, nodes: Shapes, frequency: float) -> float:
+    """Share of the motion that is no sum of harmonics of the frequency.
+
+    Taken from the heights of all nodes and their deflections along the principal plane, relative to
+    the RMS of their variation in time, under a Hann weight.
+
+    Parameters
+    ----------
+    time
+        Equally spaced times [T], shape ``(m,)``, m at least 2.
+    nodes
+        Node positions [L], shape ``(m, N + 1, 3)``.
+    frequency
+        Cycles per T, positive, known to well within a winding over the window.
+
+    Returns
+    -------
+    float
+        0 for a periodic motion, 1 for one that has nothing of the frequency or does not move.
+    """
+    along, _ = in_plane(nodes, plane_angle(nodes))
+    signals = np.concatenate([along, nodes[..., 2]], axis=1)
+    weights = hann(len(time))[:, None]
+    signals = signals - np.sum(weights * signals, axis=0)
+    orders = _resolved_orders(len(time), frequency * float(time[1] - time[0]))
+    basis = np.exp(2j * np.pi * frequency * np.outer(time - np.mean(time), orders))
+    dual = (weights * basis).conj().T
+    left = signals - basis @ np.linalg.solve(dual @ basis, dual @ signals)
+    size = float(np.sum(weights * signals**2))
+    return float(np.sqrt(np.sum(weights * np.abs(left) ** 2) / size)) if size > 0.0 else 1.0
+
+
+def _resolved_orders(samples: int, cycles_per_sample: float) -> list[int]:
+    """Harmonics, lowest first, that fold to places of their own."""
+    chosen = [0]
+    for order in (sign * k for k in range(1, MAX_HARMONICS + 1) for sign in (1, -1)):
+        apart = [(order - other) * cycles_per_sample for other in chosen]
+        if min(abs(cycles - round(cycles)) for cycles in apart) * samples >= RESOLUTION:
+            chosen.append(order)
+    return chosen

@@ -1,0 +1,174 @@
+"""A finished run: what was computed, how well, and what it shows."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any, Self
+
+from undula.analysis.close_up import close_up
+from undula.analysis.frequency import (
+    Frequency,
+    rotation_frequency,
+    shape_frequency,
+    whole_motion_frequency,
+)
+from undula.analysis.health import Health, health_of
+from undula.analysis.motion import Motion
+from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
+from undula.analysis.planes import planarity
+from undula.analysis.regimes import Verdict, first_verdict
+from undula.analysis.settling import Settled
+from undula.analysis.simulation import Ending, Schedule, Simulation
+from undula.arrays import Array
+from undula.models.model import Model
+
+
+@dataclass(frozen=True)
+class Run:
+    """The result of a time integration.
+
+    Attributes
+    ----------
+    model : Model
+    schedule : Schedule
+    ending : Ending
+        Why it ended; `cause` says more where it failed.
+    motion : Motion
+        The whole run at the asked samples.
+    close_up : Motion or None
+        Its last periods at finer intervals; None where the samples are fine enough.
+    settled : Settled or None
+        How it repeats itself, if it was watched for that and does.
+    health : Health
+        How well it was computed.
+    checkpoint : mapping of str to ndarray
+        Arrays from which it can be resumed exactly.
+    """
+
+    model: Model
+    schedule: Schedule
+    ending: Ending
+    cause: str
+    motion: Motion
+    close_up: Motion | None
+    settled: Settled | None
+    health: Health
+    checkpoint: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, simulation: Simulation) -> Self:
+        """Return the result that a simulation has come to so far."""
+        motion = Motion.of(simulation.model, simulation.times, simulation.states)
+        return cls(
+            model=simulation.model,
+            schedule=simulation.schedule,
+            ending=simulation.ending,
+            cause=simulation.cause,
+            motion=motion,
+            close_up=close_up(simulation),
+            settled=simulation.settled,
+            health=health_of(simulation, motion),
+            checkpoint=simulation.checkpoint(),
+        )
+
+    @cached_property
+    def _judged(self) -> tuple[Verdict, Motion]:
+        """The verdict and the motion that it was made on: the close-up shows all but a decay."""
+        since = self.settled.since if self.settled else None
+        verdict = _verdict(self.motion, since)
+        if verdict.name == "straight" or self.close_up is None:
+            return verdict, self.motion
+        return _verdict(self.close_up, since), self.close_up
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the run ends in."""
+        return self._judged[0]
+
+    @cached_property
+    def window(self) -> Motion:
+        """The late part of the run that the verdict and all figures below are about."""
+        verdict, motion = self._judged
+        return motion.late(verdict.window_start)
+
+    @cached_property
+    def frequency(self) -> Frequency | None:
+        """Frequency of the whole motion seen from the lab [cycles/T]; None for a straight one."""
+        return self._unless_straight(whole_motion_frequency(self.window.time, self.window.nodes))
+
+    @cached_property
+    def rotation_frequency(self) -> Frequency | None:
+        """Frequency of turning about the axis, positive from x to y [cycles/T]."""
+        late = self.window
+        return self._unless_straight(rotation_frequency(late.time, late.rotation_angle))
+
+    @cached_property
+    def shape_frequency(self) -> Frequency | None:
+        """How often the shape repeats up to rotation and reflection [cycles/T]."""
+        late = self.window
+        energy = late.energetics.bending_energy
+        return self._unless_straight(shape_frequency(late.time, late.nodes, energy))
+
+    def _unless_straight(self, frequency: Frequency | None) -> Frequency | None:
+        return None if self.verdict.name == "straight" else frequency
+
+    def summary(self) -> dict[str, Any]:
+        """Return the answer of the run in plain JSON types."""
+        late = self.window
+        return {
+            "status": self.ending.value,
+            "cause": self.cause or None,
+            "verdict": self.verdict.name,
+            "reason": self.verdict.reason,
+            "evidence": self.verdict.evidence,
+            "frequency": _value(self.frequency, sign=False),
+            "frequency_error": _error(self.frequency),
+            "rotation_frequency": _value(self.rotation_frequency),
+            "rotation_frequency_error": _error(self.rotation_frequency),
+            "shape_frequency": _value(self.shape_frequency),
+            "shape_frequency_error": _error(self.shape_frequency),
+            "bending_energy": _range(envelope(late.energetics.bending_energy)),
+            "tip_radius": _range(envelope(tip_radius(late.nodes))),
+            "tip_height": _range(envelope(tip_height(late.nodes))),
+            "planarity": float(planarity(late.nodes)),
+            "winding_angle": float(winding_angle(self.motion.nodes)[-1]),
+            "time": float(self.motion.time[-1]),
+            "window": [float(late.time[0]), float(late.time[-1])],
+            "settled": asdict(self.settled) if self.settled else None,
+            "settled_from": self.settled.since if self.settled else None,
+            **asdict(self.health),
+        }
+
+    def __str__(self) -> str:
+        """One line: what it ends in, at which frequency, and how well it was computed."""
+        frequency = self.frequency
+        rate = f" at {abs(frequency.value):.6g} +- {frequency.error:.1g} /T" if frequency else ""
+        return (
+            f"{self.verdict.name}{rate}, {self.ending.value} at {self.motion.time[-1]:.4g} T"
+            f" (power balance to {self.health.power_balance_error:.1g},"
+            f" length to {self.health.length_error:.1g}, {self.health.steps} steps)"
+        )
+
+
+def _verdict(motion: Motion, since: float | None) -> Verdict:
+    return first_verdict(
+        motion.time,
+        motion.nodes,
+        motion.energetics.bending_energy,
+        motion.rotation_angle,
+        settled_from=since,
+    )
+
+
+def _range(values: Range) -> dict[str, float]:
+    return {"min": values.min, "max": values.max, "mean": values.mean}
+
+
+def _value(frequency: Frequency | None, *, sign: bool = True) -> float | None:
+    if frequency is None:
+        return None
+    return float(frequency.value) if sign else abs(float(frequency.value))
+
+
+def _error(frequency: Frequency | None) -> float | None:
+    return None if frequency is None else float(frequency.error)

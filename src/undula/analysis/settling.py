@@ -1,0 +1,160 @@
+"""Has a motion settled: does it repeat itself, up to a rotation about the axis?
+
+Judged while a run goes on, from what the integrator notes:
+
+- at rest: the displacement has become a small part of what it was;
+- steady: the shape changes by less than the tolerance in all that is still to come;
+- periodic: at successive maxima of the elastic energy the shape comes back, after every one or every
+  few of them, to within the tolerance in all that is still to come.
+
+"All that is still to come" is what is left of a geometric decay, measured on the run itself: a motion
+that creeps is not taken for one that has arrived. What grows or does not decay has not settled,
+unless it is below the errors of the integration. A motion that leaves an unstable state more slowly
+than that cannot be told from a settled one by any run; its spectrum tells.
+"""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from undula.analysis.alignment import aligned_distance
+from undula.arrays import Nodes
+
+#: Tolerance of the repetition, relative to the displacement, in units of rtol. A hundred local errors
+#: are about what a few periods accumulate.
+TOLERANCE_IN_RTOL = 100.0
+#: Repetitions closer than so many rtol cannot be told from errors of the integration.
+NOISE_IN_RTOL = 10.0
+#: Repetitions, or turns, that have to agree.
+REPETITIONS = 5
+#: Most maxima of the energy that one period may have.
+MOST_MAXIMA = 8
+#: Looks at the pace that are kept.
+MOST_LOOKS = 1000
+#: A decay by less than this a repetition is none.
+SLOWEST_DECAY = 0.999
+#: A shape that moves by less than this part of the displacement in a period is on its way to rest.
+LEAST_SWING = 0.02
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A motion that repeats itself.
+
+    Attributes
+    ----------
+    kind : {"at rest", "steady", "periodic"}
+    since : float
+        Time from which on it does, to the tolerance [T].
+    remaining : float
+        What it may still change by, relative to the displacement.
+    period : float or None
+        Time after which the shape repeats up to rotation and reflection [T]; None if it is steady.
+    """
+
+    kind: Literal["at rest", "steady", "periodic"]
+    since: float
+    remaining: float
+    period: float | None
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How the system moved at an instant: RMS speeds and displacement, rate of turning."""
+
+    time: float
+    speed: float
+    shape_speed: float
+    displacement: float
+    turn_rate: float
+
+    @property
+    def turn(self) -> float:
+        """Time of one turn [T]; infinite without rotation."""
+        return 2.0 * math.pi / abs(self.turn_rate) if self.turn_rate else math.inf
+
+
+@dataclass
+class Watch:
+    """Collects what a run notes about itself and judges it.
+
+    Attributes
+    ----------
+    rtol : float
+        Relative tolerance of the integration, which sets those of the verdict.
+    start : float
+        RMS displacement at the start [L].
+    """
+
+    rtol: float
+    start: float
+    paces: deque[Pace] = field(default_factory=lambda: deque(maxlen=MOST_LOOKS))
+    returns: deque[tuple[float, Nodes]] = field(
+        default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MOST_MAXIMA)
+    )
+
+    def note(self, pace: Pace, returns: Sequence[tuple[float, Nodes]]) -> None:
+        """Take down the pace at a look, and times and shapes at energy maxima since the last."""
+        self.paces.append(pace)
+        self.returns.extend(returns)
+
+    def settled(self) -> Settled | None:
+        """Return how the motion has settled, None if it has not."""
+        return self._at_rest() or self._steady() or self._periodic()
+
+    def _at_rest(self) -> Settled | None:
+        start, last = self.start, self.paces[-1].displacement
+        part = last / start if start > 0.0 else 0.0
+        if part > TOLERANCE_IN_RTOL * self.rtol:
+            return None
+        return Settled("at rest", self.paces[-1].time, part, None)
+
+    def _steady(self) -> Settled | None:
+        last = self.paces[-1]
+        late = [pace for pace in self.paces if pace.time >= last.time - REPETITIONS * last.turn]
+        if len(late) < REPETITIONS or late[0] is self.paces[0]:
+            return None
+        drifts = [pace.shape_speed * last.turn / pace.displacement for pace in late]
+        remaining = _still_to_come(drifts, (late[-1].time - late[0].time) / last.turn, self.rtol)
+        if remaining is None:
+            return None
+        return Settled("steady", late[0].time, remaining, None)
+
+    def _periodic(self) -> Settled | None:
+        for lag in range(1, MOST_MAXIMA + 1):
+            returns = list(self.returns)[-(REPETITIONS + 1) * lag :: lag]
+            if len(returns) < REPETITIONS + 1:
+                return None
+            changes = [
+                float(aligned_distance(earlier, later).distance) / self.paces[-1].displacement
+                for (_, earlier), (_, later) in zip(returns, returns[1:], strict=False)
+            ]
+            remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol)
+            if remaining is not None:
+                times = [time for time, _ in returns]
+                period = (times[-1] - times[0]) / (len(times) - 1)
+                last = self.paces[-1]
+                if last.shape_speed * period < LEAST_SWING * last.displacement:
+                    return Settled("steady", times[0], remaining, None)
+                return Settled("periodic", times[0], remaining, period)
+        return None
+
+
+def _still_to_come(changes: Sequence[float], spans: float, rtol: float) -> float | None:
+    """Return the sum of all changes to come, each a repetition apart; None if it is too large.
+
+    `spans` is the number of repetitions from the first to the last of `changes`.
+    """
+    if max(changes) > TOLERANCE_IN_RTOL * rtol:
+        return None
+    if max(changes) <= NOISE_IN_RTOL * rtol:
+        return max(changes)
+    if changes[-1] == 0.0:
+        return 0.0
+    ratio = float((changes[-1] / changes[0]) ** (1.0 / spans))
+    if not ratio <= SLOWEST_DECAY:
+        return None
+    remaining = changes[-1] * ratio / (1.0 - ratio)
+    return remaining if remaining <= TOLERANCE_IN_RTOL * rtol else None

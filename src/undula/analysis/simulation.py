@@ -1,0 +1,293 @@
+"""A run in the making: it can be advanced, watched, saved, stopped and taken up again.
+
+`Simulation` owns the integrator's memory and what has been sampled so far. Samples lie at multiples of
+one interval. A run to a given time has the interval that gives the asked number of samples; a run to
+the settled state, whose length is not known, starts with a fine one and doubles it, dropping every
+other sample, whenever there are twice as many as asked.
+"""
+
+import math
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, Literal, Self
+
+import numpy as np
+
+from undula.analysis.settling import Pace, Settled, Watch
+from undula.arrays import Array, State
+from undula.errors import InputError
+from undula.models.model import Model
+from undula.numerics import memory as names
+from undula.numerics.integrate import advance
+from undula.numerics.memory import Memory, start
+from undula.numerics.results import Status
+from undula.numerics.schemes import NDF
+from undula.numerics.stepping import Options, options
+from undula.numerics.system import RATES
+
+#: Steps and samples between two looks at the run: some milliseconds.
+MOST_STEPS, MOST_SAMPLES = 500, 256
+#: Looks whose memory is kept, so that the last periods can be sampled again more finely.
+KEPT_MARKS = 40
+#: First interval of a run to the settled state, as a part of the one of a run over one time unit.
+FINER = 0.25
+#: Longest step of a run to the settled state, as a part of its limit: the looks must not be too rare.
+LONGEST_STEP = 0.01
+#: A matrix serves until a node has moved by this part of the length (docs/notes/stepping.md).
+STALE_AFTER = 0.01
+
+
+class Ending(Enum):
+    """Why a run is where it is."""
+
+    RUNNING = "running"
+    DONE = "done"
+    SETTLED = "settled"
+    LIMIT = "limit reached"
+    INTERRUPTED = "interrupted"
+    OUT_OF_TIME = "out of time"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """How long a run goes on, what it samples, and how exactly it computes.
+
+    Attributes
+    ----------
+    until : float or "settled"
+        Time at which the run ends [T], or until it repeats itself.
+    limit : float
+        Time at which a run to the settled state gives up [T].
+    samples : int
+        Number of samples, ends included; a run to the settled state has up to twice as many.
+    rtol, atol : float
+        Error tolerance of a step relative to the displacement, and absolute [L].
+    """
+
+    until: float | Literal["settled"] = 1.0
+    limit: float = 10.0
+    samples: int = 4000
+    rtol: float = 1e-6
+    atol: float = 1e-9
+
+    def __post_init__(self) -> None:
+        """Refuse values that make no run."""
+        if self.until != "settled" and not (
+            isinstance(self.until, int | float) and 0.0 < self.until < math.inf
+        ):
+            raise InputError(f"until = {self.until!r} has to be a positive number or 'settled'")
+        for name in ("limit", "rtol", "atol"):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise InputError(f"{name} = {getattr(self, name)} has to be a positive number")
+        if self.samples < 2:
+            raise InputError(f"samples = {self.samples} has to be at least 2")
+
+    @property
+    def end(self) -> float:
+        """Time at which the run ends at the latest [T]."""
+        return self.limit if self.until == "settled" else float(self.until)
+
+    @property
+    def interval(self) -> float:
+        """First interval between samples [T]."""
+        if self.until == "settled":
+            return FINER / (self.samples - 1)
+        return float(self.until) / (self.samples - 1)
+
+    def options(self, model: Model) -> Options:
+        """Return the options of the stepper for this run of `model`."""
+        return options(
+            NDF,
+            model.position_mask,
+            np.where(model.position_mask == 1.0, model.unknowns(model.straight()), 0.0),
+            rtol=self.rtol,
+            atol=self.atol,
+            stale_after=STALE_AFTER,
+            longest_step=LONGEST_STEP * self.limit if self.until == "settled" else math.inf,
+            frame=model.dimension == 3,
+        )
+
+
+@dataclass
+class Simulation:
+    """A run in the making. Use `begin` or `resume` to get one.
+
+    Attributes
+    ----------
+    model, schedule
+        What runs, and how.
+    memory : Memory
+        The integrator's.
+    interval : float
+        Time between samples [T].
+    rows : list of ndarray
+        Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals of
+        the turning rate, of the active power and of the dissipation.
+    """
+
+    model: Model
+    schedule: Schedule
+    memory: Memory
+    interval: float
+    rows: list[Array] = field(default_factory=list)
+    ending: Ending = Ending.RUNNING
+    settled: Settled | None = None
+    cause: str = ""
+    marks: deque[Memory] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
+
+    def __post_init__(self) -> None:
+        """Make what follows from the rest."""
+        self._options = self.schedule.options(self.model)
+        first = self.rows[0][0] if self.rows else self.memory.differences[0]
+        bend = self.model.positions(first[:-RATES]) - self.model.straight()
+        displacement = float(np.sqrt(np.mean(bend**2)))
+        self.watch = Watch(self.schedule.rtol, displacement)
+        self.marks.append(_copied(self.memory))
+
+    @classmethod
+    def begin(cls, model: Model, x: State, schedule: Schedule) -> Self:
+        """Return the run of `model` from the state x at time 0."""
+        if np.shape(x) != (model.size,) or not np.isfinite(x).all():
+            raise InputError(
+                f"a start of shape {np.shape(x)} is no state of this model;"
+                f" give {model.size} finite numbers"
+            )
+        unknowns, speed = model.unknowns(x), float(np.abs(model.rhs(x)).max())
+        reach = schedule.atol + schedule.rtol * float(np.abs(x - model.straight()).max())
+        step = reach / speed if speed > 0.0 else schedule.end * 1e-3
+        memory = start(model.system, NDF, unknowns, 0.0, min(step, schedule.end))
+        return cls(model, schedule, memory, schedule.interval)
+
+    @property
+    def time(self) -> float:
+        """Time that the samples have reached [T]."""
+        return max(0, self.sampled - 1) * self.interval
+
+    @property
+    def sampled(self) -> int:
+        """Number of samples so far."""
+        return sum(len(rows) for rows in self.rows)
+
+    @property
+    def times(self) -> Array:
+        """Times of the samples [T], shape (m,)."""
+        return self.interval * np.arange(self.sampled)
+
+    @property
+    def states(self) -> Array:
+        """The samples, shape (m, n + RATES)."""
+        width = self.memory.differences.shape[1]
+        self.rows = [np.concatenate([np.zeros((0, width)), *self.rows])]
+        return self.rows[0]
+
+    def advance(self) -> bool:
+        """Go on for some milliseconds; return whether there is more to do."""
+        last = math.ceil(self.schedule.end / self.interval - 1e-9)
+        ahead = np.arange(self.sampled, min(self.sampled + MOST_SAMPLES, last + 1))
+        if ahead.size == 0:
+            self.ending = Ending.LIMIT if self.schedule.until == "settled" else Ending.DONE
+            return False
+        width = self.memory.differences.shape[1]
+        states, sections = np.empty((ahead.size, width)), np.empty((MOST_STEPS, 1 + width))
+        code, filled, found = advance(
+            self.model.system,
+            self.memory,
+            self._options,
+            self.interval * ahead,
+            states,
+            sections,
+            MOST_STEPS,
+        )
+        self.rows.append(states[:filled])
+        status = Status(code)
+        if status not in (Status.DONE, Status.PAUSED):
+            self.ending, self.cause = Ending.FAILED, status.advice
+            return False
+        self.marks.append(_copied(self.memory))
+        returns = [(float(row[0]), self._nodes(row[1:])) for row in sections[:found]]
+        self.watch.note(self._pace(), returns)
+        return self.schedule.until != "settled" or self._goes_on()
+
+    def _goes_on(self) -> bool:
+        """Judge whether the motion has settled, and thin the samples of one that has not."""
+        self.settled = self.watch.settled()
+        if self.settled is not None:
+            self.ending = Ending.SETTLED
+            return False
+        if self.sampled >= 2 * self.schedule.samples:
+            self.rows = [self.states[::2].copy()]
+            self.interval *= 2.0
+        return True
+
+    def _pace(self) -> Pace:
+        real = self.memory.real
+        return Pace(
+            time=float(real[names.TIME]),
+            speed=float(real[names.SPEED]),
+            shape_speed=float(real[names.SHAPE_SPEED]),
+            displacement=float(real[names.DISPLACEMENT]),
+            turn_rate=float(real[names.TURN_RATE]),
+        )
+
+    def _nodes(self, row: Array) -> Array:
+        return self.model.nodes(self.model.positions(row[:-RATES]))
+
+    @property
+    def earliest_mark(self) -> float:
+        """Time from which on the run can be sampled again [T]."""
+        return float(self.marks[0].real[names.TIME])
+
+    def again(self, times: Array) -> Array:
+        """Sample the last part of the run once more, at other times.
+
+        Parameters
+        ----------
+        times : ndarray, shape (m,)
+            Increasing times between the earliest mark and the end of the run [T].
+
+        Returns
+        -------
+        ndarray, shape (m, n + RATES)
+            The very trajectory of the run, at these times.
+        """
+        earlier = [mark for mark in self.marks if mark.real[names.TIME] <= times[0]]
+        memory = _copied(earlier[-1])
+        states = np.empty((times.size, memory.differences.shape[1]))
+        advance(
+            self.model.system,
+            memory,
+            self._options,
+            times,
+            states,
+            np.empty((0, 1 + states.shape[1])),
+            np.iinfo(np.int64).max,
+        )
+        return states
+
+    def checkpoint(self) -> dict[str, Array]:
+        """Return all that `resume` needs, as arrays."""
+        saved: dict[str, Any] = {"states": self.states, "interval": np.float64(self.interval)}
+        for prefix, memory in (("memory", self.memory), ("mark", self.marks[0])):
+            for name, array in memory._asdict().items():
+                saved[f"{prefix}_{name}"] = array
+        return saved
+
+    @classmethod
+    def resume(cls, model: Model, schedule: Schedule, saved: Mapping[str, Array]) -> Self:
+        """Return the run that a checkpoint was taken of, ready to go on to `schedule`'s end."""
+        memory, mark = (
+            Memory(*(np.array(saved[f"{prefix}_{name}"]) for name in Memory._fields))
+            for prefix in ("mark", "memory")[::-1]
+        )
+        simulation = cls(
+            model, schedule, memory, float(saved["interval"]), [np.array(saved["states"])]
+        )
+        simulation.marks.appendleft(mark)
+        return simulation
+
+
+def _copied(memory: Memory) -> Memory:
+    return Memory(*(array.copy() for array in memory))
