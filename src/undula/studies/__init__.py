@@ -1,0 +1,1 @@
+"""Runs as data: checked input in, result files out."""

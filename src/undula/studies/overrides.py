@@ -1,0 +1,106 @@
+"""From text to plain tables: the TOML file, and single keys changed on top of it."""
+
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from undula.errors import InputError
+
+_PLACE = re.compile(r" \(at (.*)\)$")
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file into plain Python types.
+
+    Parameters
+    ----------
+    path
+        A TOML file in UTF-8, with or without a byte order mark.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, not UTF-8 or not TOML; the last with line and column.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"there is no input file {path}; check the name") from None
+    except OSError as error:
+        reason = error.strerror or error
+        raise InputError(
+            f"cannot read the input file {path} ({reason}); give a readable TOML file"
+        ) from error
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path} is not UTF-8 text (byte {error.start}); give a TOML file saved as UTF-8"
+        ) from None
+    return _parse(path, text)
+
+
+def apply_overrides(tables: Mapping[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
+    """Return a copy of `tables` with single keys changed or added.
+
+    Parameters
+    ----------
+    tables
+        Table name to keys and values; left as it is.
+    overrides
+        ``TABLE.KEY=VALUE``, applied in order. The value is read as TOML, else taken as text.
+
+    Raises
+    ------
+    InputError
+        An override has no ``=``, no table, more than one dot or no value.
+    """
+    changed = {
+        name: dict(table) if isinstance(table, Mapping) else table for name, table in tables.items()
+    }
+    for override in overrides:
+        name, key, value = _split(override)
+        table = changed.setdefault(name, {})
+        # A table that is no table stays as it is: the check of the whole input names it.
+        if isinstance(table, dict):
+            table[key] = value
+    return changed
+
+
+def _parse(path: Path, text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        message = str(error)
+        found = _PLACE.search(message)
+        place = f", {found.group(1)}" if found else ""
+        raise InputError(
+            f"{path}{place}: {_PLACE.sub('', message)}; correct the TOML there"
+        ) from None
+    except (ValueError, RecursionError):
+        # Numbers of thousands of digits and brackets nested by the thousand.
+        raise InputError(
+            f"{path} holds a value too large to read; give plain TOML numbers and text"
+        ) from None
+
+
+def _split(override: str) -> tuple[str, str, Any]:
+    target, equals, text = (part.strip() for part in override.partition("="))
+    if not equals:
+        raise InputError(f"--set {override} has no '='; write --set {target or 'load.force'}=VALUE")
+    name, dot, key = (part.strip() for part in target.partition("."))
+    if not (name and dot and key) or "." in key:
+        raise InputError(
+            f"--set {override} does not name a table and a key; write it like --set load.force=75"
+        )
+    if not text:
+        raise InputError(f"--set {override} gives no value; write --set {target}=VALUE")
+    return name, key, _value(text)
+
+
+def _value(text: str) -> Any:
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return parsed["value"] if parsed.keys() == {"value"} else text

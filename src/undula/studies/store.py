@@ -1,0 +1,196 @@
+"""The only reader and writer of result files: one NetCDF4 file for a run.
+
+The root group holds the trajectory, as any NetCDF reader shows it; the group ``checkpoint``
+holds the arrays that continue the run, bit for bit. A file appears whole or not at all, and
+the same content always gives the same bytes.
+"""
+
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from undula.errors import InputError
+from undula.studies.whole_file import write_whole
+
+FORMAT = "run 1"
+
+_ENGINE: Any = "h5netcdf"
+_CHECKPOINT = "checkpoint"
+# NetCDF hands the dimensions of the root down to the group: an array called "time" there would
+# pass for the coordinate of the dimension "time".
+_SAVED = "saved_"
+_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+def write_run(
+    path: Path,
+    dataset: xr.Dataset,
+    checkpoint: Mapping[str, npt.NDArray[Any]],
+    *,
+    overwrite: bool = False,
+) -> None:
+    """Write the result of a run, whole or not at all.
+
+    Parameters
+    ----------
+    path
+        The file to write; missing folders on the way are made.
+    dataset
+        Trajectory, observables and attributes. The attribute ``undula_format`` is added.
+    checkpoint
+        Name to array of float64, int64 or bool and of any shape, kept bit for bit.
+    overwrite
+        Whether an existing file may be replaced.
+
+    Raises
+    ------
+    InputError
+        The file exists and `overwrite` is false, or the folder cannot be written or is full.
+        A file that was there before is then left as it was.
+    """
+    write_whole(path, _image(dataset, checkpoint), overwrite=overwrite)
+
+
+def load_result(path: Path) -> xr.Dataset:
+    """Read the trajectory, observables and attributes of a stored run.
+
+    Parameters
+    ----------
+    path
+        A file written by :func:`write_run`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The root group, in memory; the file is closed again.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, cut short, or not a result file of undula.
+    """
+    return _read(path, group=None)
+
+
+def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
+    """Read the arrays that continue a stored run.
+
+    Parameters
+    ----------
+    path
+        A file written by :func:`write_run`.
+
+    Returns
+    -------
+    dict
+        Name to array, with the values, types and shapes that were written.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, cut short, or not a result file of undula.
+    """
+    arrays = _read(path, _CHECKPOINT)
+    return {str(name).removeprefix(_SAVED): array.values for name, array in arrays.items()}
+
+
+def _image(dataset: xr.Dataset, checkpoint: Mapping[str, npt.NDArray[Any]]) -> bytes:
+    """Return the bytes of the file: made in memory, a full disk cannot leave HDF5 half open."""
+    arrays = xr.Dataset(
+        {f"{_SAVED}{name}": _as_variable(name, array) for name, array in checkpoint.items()}
+    )
+    image = BytesIO()
+    _append(image, dataset.assign_attrs(undula_format=FORMAT), group=None)
+    _append(image, arrays, group=_CHECKPOINT)
+    return image.getvalue()
+
+
+def _as_variable(name: str, array: npt.NDArray[Any]) -> xr.Variable:
+    values = np.asarray(array)
+    if values.dtype not in (np.float64, np.int64, np.bool_):
+        raise TypeError(
+            f"checkpoint array {name} has type {values.dtype}, not float64, int64, bool"
+        )
+    # The dot keeps these names apart from those of other arrays.
+    return xr.Variable([f"{_SAVED}{name}.axis{axis}" for axis in range(values.ndim)], values)
+
+
+def _append(image: BytesIO, content: xr.Dataset, group: str | None) -> None:
+    # Encodings left over from a file that was read would change the bytes.
+    plain = content.drop_encoding()
+    encoding = {name: _encoding(variable) for name, variable in plain.variables.items()}
+    mode: Any = "w" if group is None else "a"
+    plain.to_netcdf(image, mode=mode, group=group, engine=_ENGINE, encoding=encoding)
+
+
+def _encoding(variable: xr.Variable) -> dict[str, Any]:
+    # No fill value: every number, NaN too, is kept as it is.
+    keep = {"_FillValue": None}
+    if variable.ndim < 2 or variable.size == 0:
+        return keep
+    return keep | {"zlib": True, "complevel": 1, "shuffle": True}
+
+
+def _read(path: Path, group: str | None) -> xr.Dataset:
+    content = _read_bytes(path)
+    try:
+        # Only h5py fails quietly on files that are cut short, so it has the first look.
+        with h5py.File(BytesIO(content), "r") as root:
+            _check_format(path, root.attrs)
+        with _opened(content, group) as stored:
+            return stored.load().drop_encoding()
+    except InputError:
+        raise
+    except Exception as error:
+        # The HDF5 stack has no common exception for broken files: nearly any may come.
+        raise InputError(
+            f"{path} is cut short or damaged; make it again with undula run"
+        ) from error
+
+
+def _opened(content: bytes, group: str | None) -> xr.Dataset:
+    return xr.open_dataset(
+        BytesIO(content),
+        engine=_ENGINE,
+        group=group,
+        phony_dims="sort",
+        mask_and_scale=False,
+        decode_times=False,
+    )
+
+
+def _read_bytes(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            signature = file.read(len(_HDF5_SIGNATURE))
+            if signature == _HDF5_SIGNATURE:
+                return signature + file.read()
+    except FileNotFoundError:
+        raise InputError(f"there is no result file {path}; check the name") from None
+    except OSError as error:
+        reason = error.strerror or error
+        raise InputError(
+            f"cannot read the result file {path} ({reason}); give a readable result file"
+        ) from error
+    if signature and _HDF5_SIGNATURE.startswith(signature):
+        raise InputError(f"{path} is cut short or damaged; make it again with undula run")
+    raise InputError(f"{path} is not a NetCDF4 file; give a result file written by undula run")
+
+
+def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:
+    found = attributes.get("undula_format")
+    if found is None:
+        raise InputError(
+            f"{path} was not written by undula; give a result file written by undula run"
+        )
+    if found != FORMAT:
+        raise InputError(
+            f"{path} has the format {str(found)!r}, but this version of undula reads {FORMAT!r};"
+            " use the version that wrote it"
+        )

@@ -1,0 +1,170 @@
+"""The four tables of an input file, with the default and the range of every key.
+
+Numbers are dimensionless: lengths in L, forces in B/L^2, times in zeta_perp L^4/B.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from undula.studies.strict_table import OnlyWith, Table, conflict
+
+Inextensibility = Literal["exact", "weak"]
+Profile = Literal["tip", "point", "linear", "power"]
+Shape = Literal["kicked", "straight", "planar", "helix", "mode", "state"]
+Handedness = Literal["right", "left"]
+
+
+class ModelTable(Table):
+    """The table ``[model]``: what moves.
+
+    Attributes
+    ----------
+    kind
+        The family of models.
+    segments
+        Number of rigid links, at least 4.
+    drag_ratio
+        Normal over tangential drag coefficient, at least 1.
+    inextensibility
+        ``"exact"`` by tensions, or ``"weak"`` by a large tensile stiffness.
+    tensile_stiffness
+        EA L^2/B, above 0; read only for weak inextensibility. The default is 4 (L/a)^2 for a
+        rod of circular section with a/L = 1/100.
+    confined
+        Whether the motion is kept in one plane.
+    """
+
+    kind: Literal["filament"] = Field(default="filament", description="'filament'")
+    segments: int = Field(default=40, ge=4, description="a whole number of at least 4")
+    drag_ratio: float = Field(default=2.0, ge=1.0, description="a number of at least 1")
+    inextensibility: Inextensibility = Field(default="exact", description="'exact' or 'weak'")
+    tensile_stiffness: float = Field(default=4e4, gt=0.0, description="a number above 0")
+    confined: bool = Field(default=False, description="true or false")
+
+    only_with: ClassVar[Mapping[str, OnlyWith]] = {
+        "tensile_stiffness": OnlyWith("inextensibility", ("weak",)),
+    }
+
+
+class LoadTable(Table):
+    """The table ``[load]``: the follower force and where it acts.
+
+    Attributes
+    ----------
+    profile
+        How the force is spread along the filament.
+    force
+        Total force F in B/L^2, at least 0.
+    position
+        Arclength s_a of a point load in L, above 0 and at most 1.
+    slope
+        Slope alpha of a linear load, from -1 to 1: density F [1 + alpha (2 s - 1)].
+    exponent
+        Exponent p of a power load, at least 0: density F (p + 1) s^p.
+    """
+
+    profile: Profile = Field(default="tip", description="'tip', 'point', 'linear' or 'power'")
+    force: float = Field(default=75.0, ge=0.0, description="a number of at least 0")
+    position: float = Field(
+        default=1.0, gt=0.0, le=1.0, description="a number above 0 and at most 1"
+    )
+    slope: float = Field(default=0.0, ge=-1.0, le=1.0, description="a number from -1 to 1")
+    exponent: float = Field(default=1.0, ge=0.0, description="a number of at least 0")
+
+    only_with: ClassVar[Mapping[str, OnlyWith]] = {
+        "position": OnlyWith("profile", ("point",)),
+        "slope": OnlyWith("profile", ("linear",)),
+        "exponent": OnlyWith("profile", ("power",)),
+    }
+
+    @property
+    def text(self) -> str:
+        """The load in a few words, such as ``point force 75 at s = 0.8``."""
+        details = {
+            "tip": "",
+            "point": f" at s = {self.position:.12g}",
+            "linear": f", slope {self.slope:.12g}",
+            "power": f", exponent {self.exponent:.12g}",
+        }
+        return f"{self.profile} force {self.force:.12g}{details[self.profile]}"
+
+
+class StartTable(Table):
+    """The table ``[start]``: the shape at time 0.
+
+    Attributes
+    ----------
+    shape
+        The family of starts.
+    amplitude
+        Size of the departure from straight, above 0 and at most 0.5; not for ``straight`` and
+        ``state``.
+    seed
+        Seed of the random kick, from 0 to 2^63 - 1; for ``kicked``.
+    angle
+        Azimuth of the plane of the start, radians; for ``planar`` and ``mode``.
+    handedness
+        Sense of the helix, ``"right"`` or ``"left"``; for ``helix``.
+    file
+        Result file whose last state is the start, relative to the working folder; for ``state``,
+        which cannot do without.
+    """
+
+    shape: Shape = Field(
+        default="kicked",
+        description="'kicked', 'straight', 'planar', 'helix', 'mode' or 'state'",
+    )
+    amplitude: float = Field(
+        default=1e-2, gt=0.0, le=0.5, description="a number above 0 and at most 0.5"
+    )
+    seed: int = Field(default=1, ge=0, lt=2**63, description="a whole number from 0 to 2^63 - 1")
+    angle: float = Field(default=0.0, description="a finite number (radians)")
+    handedness: Handedness = Field(default="right", description="'right' or 'left'")
+    file: str | None = Field(default=None, min_length=1, description="the name of a result file")
+
+    only_with: ClassVar[Mapping[str, OnlyWith]] = {
+        "amplitude": OnlyWith("shape", ("kicked", "planar", "helix", "mode")),
+        "seed": OnlyWith("shape", ("kicked",)),
+        "angle": OnlyWith("shape", ("planar", "mode")),
+        "handedness": OnlyWith("shape", ("helix",)),
+        "file": OnlyWith("shape", ("state",)),
+    }
+
+    @model_validator(mode="after")
+    def _state_has_a_file(self) -> Self:
+        if self.shape == "state" and self.file is None:
+            raise conflict(
+                "start.shape = 'state' needs start.file; give start.file = the name of a result"
+                " file"
+            )
+        return self
+
+
+class TimeTable(Table):
+    """The table ``[time]``: how long, and how exactly.
+
+    Attributes
+    ----------
+    until
+        Time at which the run ends, above 0, or ``"settled"``: until the motion repeats itself.
+    limit
+        Time at which a run to ``"settled"`` gives up, above 0.
+    samples
+        Number of stored times, at least 2.
+    rtol
+        Relative error tolerance of a step, from 1e-12 to 1e-2.
+    atol
+        Absolute error tolerance of a step, in L, above 0.
+    """
+
+    until: Annotated[float, Field(gt=0.0)] | Literal["settled"] = Field(
+        default=1.0, description="a number above 0 or 'settled'"
+    )
+    limit: float = Field(default=10.0, gt=0.0, description="a number above 0")
+    samples: int = Field(default=4000, ge=2, description="a whole number of at least 2")
+    rtol: float = Field(default=1e-6, ge=1e-12, le=1e-2, description="a number from 1e-12 to 1e-2")
+    atol: float = Field(default=1e-9, gt=0.0, description="a number above 0")
+
+    only_with: ClassVar[Mapping[str, OnlyWith]] = {"limit": OnlyWith("until", ("settled",))}

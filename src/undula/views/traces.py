@@ -1,0 +1,174 @@
+"""Quantities against time: the whole run on the left, its last few periods on the right."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from undula.views import style
+from undula.views.quantities import Curve, Row
+from undula.views.resample import curve_times
+from undula.views.scene import PERIODS_IN_FOCUS, Floats, Scene, turning_points
+
+_CYCLES_AS_LINES = 25
+_BANDS = 150
+_POINTS = 800
+_POINTS_PER_CYCLE = 24
+_MARK_SAMPLES_BELOW = 60
+
+
+def draw_traces(
+    figure: Figure, scene: Scene, rows: Sequence[Row], left: float, right: float, top: float
+) -> list[list[Axes]]:
+    """Draw rows of quantities against a shared time.
+
+    Parameters
+    ----------
+    figure : Figure
+        Where to draw them.
+    scene : Scene
+        The run.
+    rows : sequence of Row
+        From top to bottom, at least two.
+    left, right, top : float
+        Edges of the block in parts of the figure.
+
+    Returns
+    -------
+    list of lists of Axes
+        Per row its axes: the whole run, and the last few cycles where they would not be seen.
+    """
+    focus = scene.focus
+    columns = 1 if focus is None else 2
+    grid = figure.add_gridspec(
+        len(rows), columns, left=left, right=right, bottom=0.105, top=top, wspace=0.07, hspace=0.3
+    )
+    axes = [[figure.add_subplot(grid[i, j]) for j in range(columns)] for i in range(len(rows))]
+    for row, line in zip(rows, axes, strict=True):
+        _draw_row(scene, row, line)
+    for place, axis in enumerate(axes[-1]):
+        axis.set_xlabel(style.TIME_LABEL if place == 0 else style.SHORT_TIME_LABEL)
+    axes[0][0].set_title("whole run", loc="left")
+    if focus is not None:
+        name = f"last {PERIODS_IN_FOCUS} periods" if scene.period else "last part"
+        axes[0][1].set_title(name, loc="left")
+    if scene.settled is not None:
+        axes[1][0].set_title("shaded: settled", loc="right")
+    for line in axes[:-1]:
+        for axis in line:
+            axis.tick_params(labelbottom=False)
+    figure.align_ylabels([line[0] for line in axes])
+    return axes
+
+
+def band(times: Floats, values: Floats, cycles: float) -> tuple[Floats, Floats, Floats]:
+    """Give the lowest and highest value in each of many spans of at least one cycle.
+
+    Parameters
+    ----------
+    times, values : ndarrays of shape (m,)
+        A curve with too many cycles to be drawn as a line.
+    cycles : float
+        Number of cycles in it.
+
+    Returns
+    -------
+    tuple of three ndarrays of shape (k,)
+        Times from first to last, lowest values, highest values.
+    """
+    count = int(min(_BANDS, max(1, cycles), len(times)))
+    first = np.unique(np.linspace(0, len(times), count, endpoint=False).astype(int))
+    low, high = np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
+    return np.linspace(times[0], times[-1], len(first)), low, high
+
+
+def _draw_row(scene: Scene, row: Row, line: list[Axes]) -> None:
+    whole = line[0]
+    whole.set_ylabel(row.label)
+    _shade(scene, whole)
+    for curve in row.curves:
+        cycles = _cycles(curve.samples)
+        if cycles > _CYCLES_AS_LINES:
+            _draw_band(whole, scene, curve, cycles)
+        else:
+            _draw_line(whole, scene, curve, (scene.start, scene.end))
+    whole.set_xlim(scene.start, scene.end)
+    if len(line) == 2 and scene.focus is not None:
+        for curve in row.curves:
+            _draw_line(line[1], scene, curve, scene.focus)
+        line[1].set_xlim(*scene.focus)
+        line[1].tick_params(labelleft=False)
+        line[1].set_facecolor(style.FOCUS)
+    _scale(line, row)
+    if len(row.curves) > 1:
+        _name_curves(line[-1], row)
+
+
+def _draw_line(axes: Axes, scene: Scene, curve: Curve, window: tuple[float, float]) -> None:
+    times = curve_times(scene, *window, _POINTS)
+    look = curve.dashes if scene.interpolable else "none"
+    axes.plot(times, curve.at(times), linestyle=look, color=curve.colour, lw=curve.width)
+    inside = (scene.times >= window[0]) & (scene.times <= window[1])
+    if np.count_nonzero(inside) < _MARK_SAMPLES_BELOW:
+        axes.plot(scene.times[inside], curve.samples[inside], ".", color=curve.colour, ms=3.5)
+
+
+def _cycles(values: Floats) -> float:
+    least = 1e-3 * max(float(np.ptp(values)), 1e-3 * float(np.abs(values).max()), 1e-12)
+    return turning_points(values, least) / 2
+
+
+def _draw_band(axes: Axes, scene: Scene, curve: Curve, cycles: float) -> None:
+    if scene.interpolable:
+        dense = curve_times(scene, scene.start, scene.end, int(_POINTS_PER_CYCLE * cycles))
+        times, low, high = band(dense, curve.at(dense), cycles)
+    else:
+        # One cycle alone holds too few samples to reach its own highest and lowest value.
+        times, low, high = band(scene.times, curve.samples, cycles / 3)
+    axes.fill_between(times, low, high, color=curve.colour, alpha=0.22, lw=0)
+    for edge in (low, high):
+        axes.plot(times, edge, curve.dashes, color=curve.colour, lw=0.6 * curve.width)
+
+
+def _shade(scene: Scene, axes: Axes) -> None:
+    """Mark the settled part of the run, and within it the part that the other column shows."""
+    if scene.settled is not None:
+        axes.axvspan(*scene.settled, color=style.SETTLED, lw=0)
+    if scene.focus is not None:
+        axes.axvspan(*scene.focus, color=style.FOCUS, lw=0)
+
+
+def _scale(line: list[Axes], row: Row) -> None:
+    """Give both columns one scale, which a short spike at the start does not decide."""
+    bounds = np.array([_bounds(curve.samples) for curve in row.curves])
+    low, high = float(bounds[:, 0].min()), float(bounds[:, 1].max())
+    margin = 0.1 * (high - low) or max(0.1 * abs(high), 1e-3)
+    for axes in line:
+        axes.set_ylim(low - margin, high + margin)
+        axes.yaxis.set_major_locator(MaxNLocator(4))
+    line[0].xaxis.set_major_locator(MaxNLocator(5))
+    for axes in line[1:]:
+        axes.xaxis.set_major_locator(MaxNLocator(3, prune="lower"))
+
+
+def _bounds(values: Floats) -> tuple[float, float]:
+    late = values[len(values) // 2 :]
+    low, high = np.percentile(values, (1, 99))
+    return min(float(low), float(late.min())), max(float(high), float(late.max()))
+
+
+def _name_curves(axes: Axes, row: Row) -> None:
+    handles = [
+        axes.plot([], [], curve.dashes, color=curve.colour, lw=curve.width, label=curve.name)[0]
+        for curve in row.curves
+    ]
+    axes.legend(
+        handles=handles,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.99),
+        ncols=len(handles),
+        borderaxespad=0.0,
+        borderpad=0.2,
+    )

@@ -1,0 +1,100 @@
+"""A video file that appears whole or not at all."""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from subprocess import DEVNULL, PIPE, Popen
+
+import imageio_ffmpeg
+
+from undula.errors import InputError
+
+# Colour at half resolution (yuv420p), which every player knows; near-lossless to the eye; the index
+# in front, so that the film plays while it loads.
+_ENCODING = [
+    *("-c:v", "libx264", "-pix_fmt", "yuv420p"),
+    *("-preset", "veryfast", "-crf", "20", "-movflags", "+faststart"),
+]
+
+
+def check_video_path(path: Path) -> None:
+    """Refuse a path at which no MP4 file can be written.
+
+    Raises
+    ------
+    InputError
+        If the name does not end in .mp4, or its folder is missing or closed to writing.
+    """
+    if path.suffix.lower() != ".mp4":
+        raise InputError(f"movie path {str(path)!r}: give a name that ends in .mp4")
+    if path.is_dir():
+        raise InputError(f"movie path {str(path)!r} is a folder: give the name of a file")
+    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
+        raise InputError(
+            f"movie folder {str(path.parent)!r} cannot be written: "
+            "create it, allow writing, or choose another"
+        )
+
+
+def write_video(path: Path, images: Iterable[memoryview], size: tuple[int, int], fps: int) -> None:
+    """Encode images as H.264 in an MP4 file.
+
+    Parameters
+    ----------
+    path : Path
+        The file to make or replace; it is touched only once the video is complete.
+    images : iterable of memoryview
+        Each of height by width by 4 bytes: red, green, blue, opacity.
+    size : tuple of int
+        Width and height in pixels, both even.
+    fps : int
+        Images per second.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    OSError
+        If the encoder fails, or the disk is full. Then, as on any other exception, no file is
+        left behind.
+    """
+    check_video_path(path)
+    partial = path.with_name(f".{path.stem}.{os.getpid()}.part.mp4")
+    try:
+        _encode(partial, images, size, fps)
+        os.replace(partial, path)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+
+
+def _encode(path: Path, images: Iterable[memoryview], size: tuple[int, int], fps: int) -> None:
+    # A process of our own, as its exit status tells of a disk that filled up at the very end.
+    with Popen(_command(path, size, fps), stdin=PIPE, stdout=DEVNULL, stderr=PIPE) as encoder:
+        try:
+            _send(encoder, images)
+            _, complaint = encoder.communicate()
+        except BaseException:
+            encoder.kill()
+            encoder.communicate()
+            raise
+    if encoder.returncode != 0:
+        said = complaint.decode(errors="replace").strip() or "it gave no reason"
+        raise OSError(f"the video encoder failed: {said}")
+
+
+def _send(encoder: Popen[bytes], images: Iterable[memoryview]) -> None:
+    """Feed the images; an encoder that has gone is left to its exit status."""
+    if encoder.stdin is None:
+        return
+    for image in images:
+        try:
+            encoder.stdin.write(image)
+        except BrokenPipeError:
+            return
+
+
+def _command(path: Path, size: tuple[int, int], fps: int) -> list[str]:
+    frames = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}", "-r", str(fps)]
+    ffmpeg = [imageio_ffmpeg.get_ffmpeg_exe(), "-loglevel", "error", "-y"]
+    return [*ffmpeg, *frames, "-i", "-", *_ENCODING, str(path.absolute())]
