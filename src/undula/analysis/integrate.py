@@ -45,7 +45,7 @@ def integrate(
     limit: float = 10.0,
     samples: int = 4000,
     rtol: float = 1e-6,
-    atol: float = 1e-9,
+    atol: float = 1e-10,
     budget: float = float("inf"),
     progress: Callable[[Progress], None] | None = None,
 ) -> Run:
@@ -64,7 +64,8 @@ def integrate(
     samples : int
         Number of stored samples; a run to the settled state has up to twice as many.
     rtol, atol : float
-        Error tolerance of a step, relative to the RMS displacement from straight, and absolute [L].
+        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis, and
+        absolute [rad].
     budget : float
         Seconds after which the run is ended with what it has.
     progress : callable, optional

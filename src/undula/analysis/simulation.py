@@ -64,14 +64,15 @@ class Schedule:
     samples : int
         Number of samples, ends included; a run to the settled state has up to twice as many.
     rtol, atol : float
-        Error tolerance of a step relative to the displacement, and absolute [L].
+        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis, and
+        absolute [rad].
     """
 
     until: float | Literal["settled"] = 1.0
     limit: float = 10.0
     samples: int = 4000
     rtol: float = 1e-6
-    atol: float = 1e-9
+    atol: float = 1e-10
 
     def __post_init__(self) -> None:
         """Refuse values that make no run."""
@@ -155,6 +156,7 @@ class Simulation:
                 f"a start of shape {np.shape(x)} is no state of this model;"
                 f" give {model.size} finite numbers"
             )
+        x = model.admissible(x)
         unknowns, speed = model.unknowns(x), float(np.abs(model.rhs(x)).max())
         reach = schedule.atol + schedule.rtol * float(np.abs(x - model.straight()).max())
         step = reach / speed if speed > 0.0 else schedule.end * 1e-3

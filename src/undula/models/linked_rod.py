@@ -10,6 +10,7 @@ import numpy as np
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError
 from undula.models.model import Energetics
+from undula.models.rod import PlanarRod, SpatialRod
 from undula.models.rod_matrix import exact_derivative
 from undula.models.rod_velocity import observe, rate_of_change
 from undula.numerics.banded import to_dense
@@ -53,6 +54,33 @@ class LinkedRod(ABC):
     def unknowns(self, x: State) -> Array:
         """Return the integrator's vector: positions and the multipliers that belong to them."""
         return self._moving(x)[0]
+
+    def admissible(self, x: State) -> State:
+        """Return the shape of x with the lengths that its links have to have.
+
+        Rigid links get theirs to round-off; extensible ones the lengths at which stretching and
+        tension balance, as a start from any other would begin with a burst of axial relaxation.
+        """
+        links = np.diff(np.reshape(x, (self.links, self.dimension)), axis=0, prepend=0.0)
+        tangents = links / np.linalg.norm(links, axis=1, keepdims=True)
+        stretch = np.ones(self.links)
+        if self.system.extensible:
+            stretch += self._rigid_tension(tangents) / self.system.tensile
+        return np.cumsum(stretch[:, None] * tangents * self.system.link, axis=0).ravel()
+
+    def _rigid_tension(self, tangents: Array) -> Array:
+        """Return the tensions (N,) that rigid links with these tangents would have."""
+        rigid = (PlanarRod if self.dimension == 2 else SpatialRod)(*self.system)
+        unknowns = np.zeros((self.links, self.dimension + 1))
+        unknowns[:, :-1] = np.cumsum(tangents * rigid.link, axis=0)
+        flat = unknowns.ravel()
+        rate_of_change(rigid, flat, np.zeros(flat.size))
+        before = np.vstack([np.eye(self.dimension)[-1], tangents[:-1]])
+        cosine = np.clip(np.sum(before * tangents, axis=1), -1.0, 1.0)
+        angle = np.arccos(cosine)
+        shortfall = rigid.joint * (1.0 - cosine) / np.sinc(angle / np.pi)
+        shortfall[:-1] += shortfall[1:]
+        return flat.reshape(unknowns.shape)[:, -1] + shortfall / rigid.link
 
     def rhs(self, x: State) -> State:
         """Return dx/dt."""

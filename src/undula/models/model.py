@@ -50,6 +50,9 @@ class Model(Protocol):
     def straight(self) -> State:
         """Return the straight state along the axis, an equilibrium."""
 
+    def admissible(self, x: State) -> State:
+        """Return the state near x that meets the model's constraints to round-off."""
+
     def rhs(self, x: State) -> State:
         """Return dx/dt."""
 

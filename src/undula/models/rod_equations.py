@@ -10,7 +10,16 @@ import numpy as np
 from undula.compiled import kernel
 from undula.models.joint import stiffening
 from undula.models.rod import RODS
-from undula.numerics.system import generator, implements, rates, residual, rotate, weigh
+from undula.numerics.system import (
+    constraint_error,
+    generator,
+    implements,
+    rates,
+    residual,
+    rotate,
+    size,
+    weigh,
+)
 
 
 @cache
@@ -167,6 +176,30 @@ def _register(rod: Any) -> None:
         out[0] = spin / inertia if inertia > 0.0 else 0.0
         out[1] = power
         out[2] = dissipation
+
+    @implements(size, rod)
+    def rod_size(system: Any, vector: Any, mask: Any) -> Any:
+        total = 0.0
+        for a in range(d):
+            total += vector[a] * vector[a]
+        for i in range(1, system.joint.shape[0]):
+            for a in range(d):
+                change = vector[m * i + a] - vector[m * (i - 1) + a]
+                total += change * change
+        return math.sqrt(total * system.joint.shape[0])
+
+    if not extensible:
+
+        @implements(constraint_error, rod)
+        def rod_constraint_error(system: Any, y: Any) -> Any:
+            n, largest = system.joint.shape[0], 0.0
+            for i in range(n):
+                square = 0.0
+                for a in range(d):
+                    link = y[m * i + a] - (y[m * (i - 1) + a] if i > 0 else 0.0)
+                    square += link * link
+                largest = max(largest, abs(0.5 * (square * n * n - 1.0)))
+            return largest
 
     if d == 3:
 

@@ -18,11 +18,10 @@ from undula.numerics.memory import (
     SPEED,
     STEP,
 )
-from undula.numerics.stepping import root_mean_square
-from undula.numerics.system import rotate
+from undula.numerics.system import rotate, size
 
 #: A step is made this much shorter than its error estimate would allow.
-SAFETY = 0.9
+SAFETY = 0.85
 #: No step is shortened by more after an error, or lengthened by more after a success.
 SHORTEST_FACTOR, LONGEST_FACTOR = 0.2, 10.0
 #: A change of length by less is not worth a new matrix.
@@ -76,7 +75,7 @@ def accept(memory: Any, work: Any) -> None:
 
 
 @kernel
-def plan(memory: Any, options: Any, error: Any, scale: Any) -> None:
+def plan(system: Any, memory: Any, options: Any, error: Any, scale: Any) -> None:
     """Choose order and length of the next step from the errors that each order would make."""
     order = memory.count[ORDER]
     memory.count[PLANNED_ORDER] = order
@@ -85,13 +84,13 @@ def plan(memory: Any, options: Any, error: Any, scale: Any) -> None:
         return
     best, best_order = factor_for(error, order), order
     if order > 1:
-        lower = options.error[order - 1] * root_mean_square(memory.differences[order], options.mask)
+        lower = options.error[order - 1] * size(system, memory.differences[order], options.mask)
         factor = factor_for(lower / scale, order - 1)
         if factor > best:
             best, best_order = factor, order - 1
     if order + 4 <= memory.differences.shape[0]:
-        size = root_mean_square(memory.differences[order + 2], options.mask)
-        factor = factor_for(options.error[order + 1] * size / scale, order + 1)
+        higher = options.error[order + 1] * size(system, memory.differences[order + 2], options.mask)
+        factor = factor_for(higher / scale, order + 1)
         if factor > best:
             best, best_order = factor, order + 1
     factor = min(LONGEST_FACTOR, SAFETY * best, options.longest_step / memory.real[STEP])

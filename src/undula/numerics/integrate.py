@@ -44,10 +44,9 @@ from undula.numerics.stepping import (
     correct,
     integrate_rates,
     predict,
-    root_mean_square,
     workspace,
 )
-from undula.numerics.system import generator
+from undula.numerics.system import generator, size
 
 _DONE, _PAUSED = Status.DONE.value, Status.PAUSED.value
 _TOO_SHORT, _NOT_FINITE = Status.STEP_TOO_SHORT.value, Status.NOT_FINITE.value
@@ -68,7 +67,7 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
     while True:
         if memory.real[STEP] < SHORTEST_ABSOLUTE + SHORTEST_RELATIVE * abs(memory.real[TIME]):
             return _TOO_SHORT
-        c, scale = predict(memory, options, work)
+        c, scale = predict(system, memory, options, work)
         if not np.isfinite(scale):
             return _NOT_FINITE
         if not correct(system, memory, options, work, c, scale):
@@ -76,7 +75,7 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
             change_step(memory, FAILURE_FACTOR)
             continue
         integrate_rates(system, memory, work, c)
-        error = step_error(memory, options, work) / scale
+        error = step_error(system, memory, options, work) / scale
         if error <= 1.0:
             break
         memory.count[REJECTED] += 1
@@ -87,17 +86,17 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
     memory.count[STEPS] += 1
     memory.real[SMALLEST_STEP] = min(memory.real[SMALLEST_STEP], memory.real[STEP])
     memory.real[LARGEST_STEP] = max(memory.real[LARGEST_STEP], memory.real[STEP])
-    plan(memory, options, error, scale)
+    plan(system, memory, options, error, scale)
     return _DONE
 
 
 @kernel
-def step_error(memory: Any, options: Any, work: Any) -> Any:
+def step_error(system: Any, memory: Any, options: Any, work: Any) -> Any:
     """Return the estimated error of the step's positions, in the frame with that of its angle."""
     n = work.y.shape[0]
-    error = root_mean_square(work.change[:n], options.mask)
+    error = size(system, work.change[:n], options.mask)
     if memory.count[IN_FRAME] == 1:
-        lever = root_mean_square(work.turning, options.mask)
+        lever = size(system, work.turning, options.mask)
         error = math.hypot(error, lever * work.change[n])
     return error * options.error[memory.count[ORDER]]
 
@@ -109,12 +108,12 @@ def note_rates(system: Any, memory: Any, options: Any, work: Any) -> None:
     rate = (work.change[n] + work.psi[n]) / c
     generator(system, work.y, work.turning)
     memory.real[TURN_RATE] = rate
-    memory.real[SPEED] = root_mean_square(work.w, options.mask) / c
+    memory.real[SPEED] = size(system, work.w, options.mask) / c
     for i in range(n):
         work.w[i] -= c * rate * work.turning[i]
         work.y[i] -= options.reference[i]
-    memory.real[SHAPE_SPEED] = root_mean_square(work.w, options.mask) / c
-    memory.real[DISPLACEMENT] = root_mean_square(work.y, options.mask)
+    memory.real[SHAPE_SPEED] = size(system, work.w, options.mask) / c
+    memory.real[DISPLACEMENT] = size(system, work.y, options.mask)
     stored = work.change[n + 1] - work.change[n + 2] + work.psi[n + 1] - work.psi[n + 2]
     memory.real[STORING_RATE] = stored / c
 

@@ -1,10 +1,11 @@
 """One implicit step: predict, solve by a simplified Newton method, estimate the error.
 
-Errors and corrections are measured by one norm, the root mean square over positions divided by
+Errors and corrections are measured by the system's own norm, `size`, in units of
 
-    scale = atol + rtol * (root mean square distance of the positions from the reference state).
+    scale = atol + rtol * size(distance from the reference state).
 
 It does not change when the system turns, and a small motion is computed as accurately as a large one.
+A rod measures tangents, not positions: their errors are what the energy and the lengths feel.
 
 A frozen Newton matrix goes stale because the system turns rather than because time passes. It is
 therefore used in the orientation that it was made in: the residual is turned back, the solution
@@ -36,12 +37,14 @@ from undula.numerics.memory import (
 from undula.numerics.schemes import BackwardDifferentiation
 from undula.numerics.system import (
     RATES,
+    constraint_error,
     factor,
     generator,
     matrix,
     rates,
     residual,
     rotate,
+    size,
     solve,
     weigh,
 )
@@ -52,6 +55,8 @@ MOST_CORRECTIONS = 5
 DIVERGENCE = 2.0
 #: What a converging iteration may leave, as a fraction of the error allowed in a step.
 NEWTON_FRACTION = 0.05
+#: Constraints are met to this many rtol.
+CONSTRAINT_IN_RTOL = 2.0
 #: The remembered contraction is forgotten at most this fast, as in CVODE.
 CONTRACTION_MEMORY = 0.3
 
@@ -119,16 +124,6 @@ def workspace(n: Any) -> Any:
 
 
 @kernel
-def root_mean_square(values: Any, mask: Any) -> Any:
-    """Return the root mean square of `values` over the positions."""
-    total, weight = 0.0, 0.0
-    for i in range(mask.shape[0]):
-        total += mask[i] * values[i] * values[i]
-        weight += mask[i]
-    return math.sqrt(total / weight)
-
-
-@kernel
 def dot(a: Any, b: Any, mask: Any) -> Any:
     """Return the scalar product of a and b over the positions."""
     total = 0.0
@@ -138,7 +133,7 @@ def dot(a: Any, b: Any, mask: Any) -> Any:
 
 
 @kernel
-def predict(memory: Any, options: Any, work: Any) -> Any:
+def predict(system: Any, memory: Any, options: Any, work: Any) -> Any:
     """Extrapolate to the end of the step; return its parameter c and the scale of its errors."""
     order, n = memory.count[ORDER], work.y.shape[0]
     differences = memory.differences
@@ -153,7 +148,7 @@ def predict(memory: Any, options: Any, work: Any) -> Any:
     work.y[:] = work.predicted[:n]
     for i in range(n):
         work.w[i] = work.y[i] - options.reference[i]
-    scale = options.atol + options.rtol * root_mean_square(work.w, options.mask)
+    scale = options.atol + options.rtol * size(system, work.w, options.mask)
     return memory.real[STEP] * inverse, scale
 
 
@@ -225,7 +220,7 @@ def one_correction(
             delta[i] += turn_change * memory.border[i]
     for i in range(n):
         work.change[i] -= delta[i]
-    return root_mean_square(delta, options.mask), turn
+    return size(system, delta, options.mask), turn
 
 
 @kernel
@@ -262,17 +257,19 @@ def iterate(
 ) -> Any:
     """Correct with one factored matrix until the rest is negligible; False where it is not."""
     in_frame = memory.count[IN_FRAME] == 1
+    allowed = CONSTRAINT_IN_RTOL * options.rtol
     previous = 0.0
     for m in range(MOST_CORRECTIONS):
-        size, turn = one_correction(system, memory, options, work, c, turn, angle)
-        if not np.isfinite(size) or (m > 0 and size > DIVERGENCE * previous):
+        found, turn = one_correction(system, memory, options, work, c, turn, angle)
+        if not np.isfinite(found) or (m > 0 and found > DIVERGENCE * previous):
             return False
         if m > 0 and previous > 0.0:
             remembered = CONTRACTION_MEMORY * memory.real[CONTRACTION]
-            memory.real[CONTRACTION] = max(remembered, size / previous)
-        previous = size
+            memory.real[CONTRACTION] = max(remembered, found / previous)
+        previous = found
         spread(system, work, in_frame, turn)
-        if size * min(1.0, memory.real[CONTRACTION]) <= NEWTON_FRACTION * scale:
+        left = found * min(1.0, memory.real[CONTRACTION])
+        if left <= NEWTON_FRACTION * scale and constraint_error(system, work.y) <= allowed:
             return True
     return False
 
