@@ -1,7 +1,8 @@
 """The last periods of a run, sampled more finely than the rest.
 
-A long run has too few samples a period to tell what it does or to draw it. Its last periods are then
-computed once more from a mark that the simulation has kept, which gives the very same trajectory.
+A long run has too few samples a period to tell what it does or to draw it. Its last periods are
+then computed once more from a mark that the simulation has kept, which gives the very same
+trajectory.
 """
 
 import numpy as np
@@ -29,7 +30,7 @@ def close_up(simulation: Simulation) -> Motion | None:
     count = int((end - start) / interval)
     if count < 2:
         return None
-    times = end - interval * np.arange(count, -1, -1)
+    times = end - interval * np.arange(count, -1, -1, dtype=np.float64)
     return Motion.of(simulation.model, times, simulation.again(times))
 
 

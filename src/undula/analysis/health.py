@@ -20,7 +20,8 @@ class Health:
         Largest |elastic energy gained + dissipated - put in| up to any sample, relative to the
         energy dissipated and put in over the run. Zero for the exact solution.
     length_error : float
-        Largest relative change of length of a link at any sample; of extensible links, their strain.
+        Largest relative change of length of a link at any sample; of extensible links, their
+        strain.
     smallest_step, largest_step : float
         Of the accepted steps [T].
     steps, rejected, failed : int

@@ -10,7 +10,8 @@ from types import FrameType
 from typing import Literal
 
 from undula.analysis.run import Run
-from undula.analysis.simulation import Ending, Schedule, Simulation
+from undula.analysis.schedule import Ending, Schedule
+from undula.analysis.simulation import Simulation
 from undula.arrays import State
 from undula.models.model import Model
 from undula.numerics import memory as names
@@ -64,8 +65,8 @@ def integrate(
     samples : int
         Number of stored samples; a run to the settled state has up to twice as many.
     rtol, atol : float
-        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis, and
-        absolute [rad].
+        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis,
+        and absolute [rad].
     budget : float
         Seconds after which the run is ended with what it has.
     progress : callable, optional
@@ -129,10 +130,10 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
     noted = False
     before = signal.getsignal(signal.SIGINT)
 
-    def note(signum: int, frame: FrameType | None) -> None:
+    def note(_signum: int, _frame: FrameType | None) -> None:
         nonlocal noted
         noted = True
-        signal.signal(signum, before)
+        signal.signal(signal.SIGINT, before)
 
     signal.signal(signal.SIGINT, note)
     try:

@@ -38,7 +38,8 @@ class Motion:
         """Return what rows of a simulation (m, n + RATES) say about the model."""
         unknowns, integrals = states[:, :-RATES], states[:, -RATES:]
         nodes = model.nodes(model.positions(unknowns))
-        return cls(time, nodes, *integrals.T, energetics=model.observe(unknowns))
+        angle, work, loss = integrals.T
+        return cls(time, nodes, angle, work, loss, model.observe(unknowns))
 
     def late(self, start: float) -> Self:
         """Return the part of the motion from a time on, whatever round-off says about its edge."""

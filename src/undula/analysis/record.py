@@ -18,14 +18,14 @@ _LIBRARIES = ("undula", "numpy", "numba")
 
 
 def dataset_of(
-    run: Run, *, input: Mapping[str, Any] | None = None, load: str | None = None
+    run: Run, *, inputs: Mapping[str, Any] | None = None, load: str | None = None
 ) -> xr.Dataset:
     """Return a run as a dataset with dims time, node and axis.
 
     Parameters
     ----------
     run : Run
-    input : mapping, optional
+    inputs : mapping, optional
         The complete input that made the run; by default the model's fields and the schedule's.
     load : str, optional
         The load in words, for figures.
@@ -40,7 +40,7 @@ def dataset_of(
     if run.close_up is not None:
         variables |= _variables(run.close_up, "close_")
     links = run.motion.nodes.shape[1] - 1
-    complete = input or {"model": _fields(run.model), "time": _fields(run.schedule)}
+    complete = inputs or {"model": _fields(run.model), "time": _fields(run.schedule)}
     summary = run.summary() | {"load": load or str(getattr(run.model, "load", ""))}
     return xr.Dataset(
         variables,

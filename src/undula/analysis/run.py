@@ -17,8 +17,9 @@ from undula.analysis.motion import Motion
 from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
 from undula.analysis.planes import planarity
 from undula.analysis.regimes import Verdict, first_verdict
+from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Settled
-from undula.analysis.simulation import Ending, Schedule, Simulation
+from undula.analysis.simulation import Simulation
 from undula.arrays import Array
 from undula.models.model import Model
 

@@ -1,34 +1,38 @@
-"""Has a motion settled: does it repeat itself, up to a rotation about the axis?
+"""Whether a motion has settled: whether it repeats itself, up to a rotation about the axis.
 
 Judged while a run goes on, from what the integrator notes:
 
 - at rest: the displacement has become a small part of what it was;
 - steady: the shape changes by less than the tolerance in all that is still to come;
-- periodic: at successive maxima of the elastic energy the shape comes back, after every one or every
+- periodic: at successive maxima of the elastic energy the shape comes back, after every one or
+every
   few of them, to within the tolerance in all that is still to come.
 
-"All that is still to come" is what is left of a geometric decay, measured on the run itself: a motion
-that creeps is not taken for one that has arrived. What grows or does not decay has not settled,
-unless it is below the errors of the integration. A motion that leaves an unstable state more slowly
-than that cannot be told from a settled one by any run; its spectrum tells.
+"All that is still to come" is what is left of a geometric decay, measured on the run itself: a
+motion that creeps is not taken for one that has arrived. What grows or does not decay has not
+settled, unless it is below the errors of the integration. A motion that leaves an unstable state
+more slowly than that cannot be told from a settled one by any run; its spectrum tells.
 """
 
 import math
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal
 
 from undula.analysis.alignment import aligned_distance
 from undula.arrays import Nodes
 
-#: Tolerance of the repetition, relative to the displacement, in units of rtol. A hundred local errors
-#: are about what a few periods accumulate.
+#: Tolerance of the repetition, relative to the displacement, in units of rtol. A hundred local
+#: errors are about what a few periods accumulate.
 TOLERANCE_IN_RTOL = 100.0
 #: Repetitions closer than so many rtol cannot be told from errors of the integration.
 NOISE_IN_RTOL = 10.0
 #: Repetitions, or turns, that have to agree.
 REPETITIONS = 5
+#: Beats or turns of a settled motion that a run goes on to show.
+SHOWN_CYCLES = 12
 #: Most maxima of the energy that one period may have.
 MOST_MAXIMA = 8
 #: Looks at the pace that are kept.
@@ -52,12 +56,23 @@ class Settled:
         What it may still change by, relative to the displacement.
     period : float or None
         Time after which the shape repeats up to rotation and reflection [T]; None if it is steady.
+    turn : float
+        Time of one turn about the axis [T]; infinite without rotation.
     """
 
     kind: Literal["at rest", "steady", "periodic"]
     since: float
     remaining: float
     period: float | None
+    turn: float = math.inf
+
+    @property
+    def shown_until(self) -> float:
+        """Time until which it should be seen, to measure its frequencies [T]."""
+        if self.kind == "at rest":
+            return self.since
+        cycle = 2.0 * self.period if self.period else self.turn  # two mirror images a beat
+        return self.since + SHOWN_CYCLES * cycle if math.isfinite(cycle) else self.since
 
 
 @dataclass(frozen=True)
@@ -120,7 +135,7 @@ class Watch:
         remaining = _still_to_come(drifts, (late[-1].time - late[0].time) / last.turn, self.rtol)
         if remaining is None:
             return None
-        return Settled("steady", late[0].time, remaining, None)
+        return Settled("steady", late[0].time, remaining, None, last.turn)
 
     def _periodic(self) -> Settled | None:
         for lag in range(1, MOST_MAXIMA + 1):
@@ -129,7 +144,7 @@ class Watch:
                 return None
             changes = [
                 float(aligned_distance(earlier, later).distance) / self.paces[-1].displacement
-                for (_, earlier), (_, later) in zip(returns, returns[1:], strict=False)
+                for (_, earlier), (_, later) in pairwise(returns)
             ]
             remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol)
             if remaining is not None:
@@ -137,8 +152,8 @@ class Watch:
                 period = (times[-1] - times[0]) / (len(times) - 1)
                 last = self.paces[-1]
                 if last.shape_speed * period < LEAST_SWING * last.displacement:
-                    return Settled("steady", times[0], remaining, None)
-                return Settled("periodic", times[0], remaining, period)
+                    return Settled("steady", times[0], remaining, None, last.turn)
+                return Settled("periodic", times[0], remaining, period, last.turn)
         return None
 
 

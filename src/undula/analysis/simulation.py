@@ -1,20 +1,20 @@
 """A run in the making: it can be advanced, watched, saved, stopped and taken up again.
 
-`Simulation` owns the integrator's memory and what has been sampled so far. Samples lie at multiples of
-one interval. A run to a given time has the interval that gives the asked number of samples; a run to
-the settled state, whose length is not known, starts with a fine one and doubles it, dropping every
-other sample, whenever there are twice as many as asked.
+`Simulation` owns the integrator's memory and what has been sampled so far. Samples lie at multiples
+of one interval. A run to a given time has the interval that gives the asked number of samples; a
+run to the settled state, whose length is not known, starts with a fine one and doubles it, dropping
+every other sample, whenever there are twice as many as asked.
 """
 
 import math
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import Enum
-from typing import Any, Literal, Self
+from typing import Any, Self
 
 import numpy as np
 
+from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Pace, Settled, Watch
 from undula.arrays import Array, State
 from undula.errors import InputError
@@ -24,92 +24,12 @@ from undula.numerics.integrate import advance
 from undula.numerics.memory import Memory, start
 from undula.numerics.results import Status
 from undula.numerics.schemes import NDF
-from undula.numerics.stepping import Options, options
 from undula.numerics.system import RATES
 
 #: Steps and samples between two looks at the run: some milliseconds.
 MOST_STEPS, MOST_SAMPLES = 500, 256
 #: Looks whose memory is kept, so that the last periods can be sampled again more finely.
 KEPT_MARKS = 40
-#: First interval of a run to the settled state, as a part of the one of a run over one time unit.
-FINER = 0.25
-#: Longest step of a run to the settled state, as a part of its limit: the looks must not be too rare.
-LONGEST_STEP = 0.01
-#: A matrix serves until a node has moved by this part of the length (docs/notes/stepping.md).
-STALE_AFTER = 0.01
-
-
-class Ending(Enum):
-    """Why a run is where it is."""
-
-    RUNNING = "running"
-    DONE = "done"
-    SETTLED = "settled"
-    LIMIT = "limit reached"
-    INTERRUPTED = "interrupted"
-    OUT_OF_TIME = "out of time"
-    FAILED = "failed"
-
-
-@dataclass(frozen=True)
-class Schedule:
-    """How long a run goes on, what it samples, and how exactly it computes.
-
-    Attributes
-    ----------
-    until : float or "settled"
-        Time at which the run ends [T], or until it repeats itself.
-    limit : float
-        Time at which a run to the settled state gives up [T].
-    samples : int
-        Number of samples, ends included; a run to the settled state has up to twice as many.
-    rtol, atol : float
-        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis, and
-        absolute [rad].
-    """
-
-    until: float | Literal["settled"] = 1.0
-    limit: float = 10.0
-    samples: int = 4000
-    rtol: float = 1e-6
-    atol: float = 1e-10
-
-    def __post_init__(self) -> None:
-        """Refuse values that make no run."""
-        if self.until != "settled" and not (
-            isinstance(self.until, int | float) and 0.0 < self.until < math.inf
-        ):
-            raise InputError(f"until = {self.until!r} has to be a positive number or 'settled'")
-        for name in ("limit", "rtol", "atol"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise InputError(f"{name} = {getattr(self, name)} has to be a positive number")
-        if self.samples < 2:
-            raise InputError(f"samples = {self.samples} has to be at least 2")
-
-    @property
-    def end(self) -> float:
-        """Time at which the run ends at the latest [T]."""
-        return self.limit if self.until == "settled" else float(self.until)
-
-    @property
-    def interval(self) -> float:
-        """First interval between samples [T]."""
-        if self.until == "settled":
-            return FINER / (self.samples - 1)
-        return float(self.until) / (self.samples - 1)
-
-    def options(self, model: Model) -> Options:
-        """Return the options of the stepper for this run of `model`."""
-        return options(
-            NDF,
-            model.position_mask,
-            np.where(model.position_mask == 1.0, model.unknowns(model.straight()), 0.0),
-            rtol=self.rtol,
-            atol=self.atol,
-            stale_after=STALE_AFTER,
-            longest_step=LONGEST_STEP * self.limit if self.until == "settled" else math.inf,
-            frame=model.dimension == 3,
-        )
 
 
 @dataclass
@@ -125,8 +45,8 @@ class Simulation:
     interval : float
         Time between samples [T].
     rows : list of ndarray
-        Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals of
-        the turning rate, of the active power and of the dissipation.
+        Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals
+        of the turning rate, of the active power and of the dissipation.
     """
 
     model: Model
@@ -176,7 +96,7 @@ class Simulation:
     @property
     def times(self) -> Array:
         """Times of the samples [T], shape (m,)."""
-        return self.interval * np.arange(self.sampled)
+        return self.interval * np.arange(self.sampled, dtype=np.float64)
 
     @property
     def states(self) -> Array:
@@ -190,7 +110,7 @@ class Simulation:
         last = math.ceil(self.schedule.end / self.interval - 1e-9)
         ahead = np.arange(self.sampled, min(self.sampled + MOST_SAMPLES, last + 1))
         if ahead.size == 0:
-            self.ending = Ending.LIMIT if self.schedule.until == "settled" else Ending.DONE
+            self.ending = self._last_ending()
             return False
         width = self.memory.differences.shape[1]
         states, sections = np.empty((ahead.size, width)), np.empty((MOST_STEPS, 1 + width))
@@ -213,10 +133,18 @@ class Simulation:
         self.watch.note(self._pace(), returns)
         return self.schedule.until != "settled" or self._goes_on()
 
+    def _last_ending(self) -> Ending:
+        """Return the ending of a run whose time is over."""
+        if self.schedule.until != "settled":
+            return Ending.DONE
+        return Ending.SETTLED if self.settled else Ending.LIMIT
+
     def _goes_on(self) -> bool:
-        """Judge whether the motion has settled, and thin the samples of one that has not."""
-        self.settled = self.watch.settled()
-        if self.settled is not None:
+        """Judge whether the motion has settled and been shown; thin the samples of a long run."""
+        found = self.watch.settled()
+        if found is None or self.settled is None:
+            self.settled = found  # a motion that leaves again had not settled
+        if self.settled is not None and self.time >= self.settled.shown_until:
             self.ending = Ending.SETTLED
             return False
         if self.sampled >= 2 * self.schedule.samples:

@@ -14,6 +14,7 @@ from undula.models.rod import (
     ExtensiblePlanarRod,
     ExtensibleSpatialRod,
     PlanarRod,
+    Rod,
     SpatialRod,
 )
 
@@ -21,7 +22,7 @@ from undula.models.rod import (
 TENSILE_STIFFNESS = 4e4
 FEWEST_SEGMENTS = 4
 
-_RODS = {
+_RODS: dict[tuple[str, bool], type[Rod]] = {
     ("exact", False): SpatialRod,
     ("exact", True): PlanarRod,
     ("weak", False): ExtensibleSpatialRod,
@@ -69,7 +70,9 @@ class Filament(LinkedRod):
                 f" give a whole number of at least {FEWEST_SEGMENTS}"
             )
         if not (math.isfinite(self.drag_ratio) and self.drag_ratio >= 1.0):
-            raise InputError(f"drag_ratio = {self.drag_ratio} has to be a finite number, at least 1")
+            raise InputError(
+                f"drag_ratio = {self.drag_ratio} has to be a finite number, at least 1"
+            )
         if self.inextensibility not in ("exact", "weak"):
             raise InputError(
                 f"inextensibility = {self.inextensibility!r} has to be 'exact' or 'weak'"
@@ -80,7 +83,7 @@ class Filament(LinkedRod):
             )
 
     @cached_property
-    def system(self) -> SpatialRod | PlanarRod | ExtensibleSpatialRod | ExtensiblePlanarRod:
+    def system(self) -> Rod:
         """The tables: half cells at both ends make them second-order accurate."""
         n, h = self.segments, 1.0 / self.segments
         joint, weight = np.full(n, 1.0 / h), np.full(n, h)

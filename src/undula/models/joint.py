@@ -1,7 +1,7 @@
 """The elastic joint between two links: energy K psi^2 / 2 of the angle psi between them.
 
-Its moment is needed as g(c) = psi / sin(psi), a smooth function of c = cos(psi) that is 1 for aligned
-links and infinite for folded ones (psi = pi).
+Its moment is needed as g(c) = psi / sin(psi), a smooth function of c = cos(psi) that is 1 for
+aligned links and infinite for folded ones (psi = pi).
 """
 
 import math
@@ -12,7 +12,9 @@ from undula.compiled import kernel
 #: Below this z = sin^2(psi/2) twelve terms of the series are exact to round-off (0.03^12 = 5e-19).
 _SERIES_BELOW = 0.03
 #: psi / sin(psi) = sum of coefficient n times z^n.
-_SERIES = tuple(math.prod([2.0 * k / (2.0 * k + 1.0) for k in range(1, n + 1)], start=1.0) for n in range(12))
+_SERIES = tuple(
+    math.prod([2.0 * k / (2.0 * k + 1.0) for k in range(1, n + 1)], start=1.0) for n in range(12)
+)
 _SERIES_SLOPE = tuple((n + 1) * _SERIES[n + 1] for n in range(11))
 
 

@@ -80,7 +80,7 @@ class LinkedRod(ABC):
         angle = np.arccos(cosine)
         shortfall = rigid.joint * (1.0 - cosine) / np.sinc(angle / np.pi)
         shortfall[:-1] += shortfall[1:]
-        return flat.reshape(unknowns.shape)[:, -1] + shortfall / rigid.link
+        return np.asarray(flat.reshape(unknowns.shape)[:, -1] + shortfall / rigid.link)
 
     def rhs(self, x: State) -> State:
         """Return dx/dt."""
@@ -95,7 +95,7 @@ class LinkedRod(ABC):
         return unknowns, velocity
 
     def jacobian(self, x: State) -> Array:
-        """Return d rhs / dx, shape (size, size), from the derivative of R v = f and of the constraint."""
+        """Return d rhs / dx, shape (size, size), from those of R v = f and of the constraint."""
         y, v = self._moving(x)
         d, m, n = self.dimension, self.dimension + 1, y.size
         moving = self.position_mask == 1.0
@@ -114,7 +114,7 @@ class LinkedRod(ABC):
             right[~moving] = -full[np.ix_(~moving, moving)]
         else:
             right[~moving] = -self._tangent_change(v, d, m)[:, moving]
-        return np.linalg.solve(implicit, right)[moving]
+        return np.asarray(np.linalg.solve(implicit, right)[moving])
 
     def _tangent_change(self, v: Array, d: int, m: int) -> Array:
         """Return the derivative of e_i . (v_i - v_{i-1}) / h^2 by positions, at fixed v."""
@@ -150,7 +150,7 @@ class LinkedRod(ABC):
         return x.ravel()
 
     def nodes(self, x: State) -> Nodes:
-        """Return the positions of all nodes in space, base first; further axes in front are kept."""
+        """Return the positions of all nodes in space, base first; axes in front are kept."""
         x = np.asarray(x).reshape(*np.shape(x)[:-1], self.links, self.dimension)
         nodes = np.zeros((*x.shape[:-2], self.links + 1, 3))
         nodes[..., 1:, self._axes] = x
@@ -195,9 +195,18 @@ class LinkedRod(ABC):
 
     def with_(self, **changes: Any) -> Self:
         """Return the model with other values of its own fields or of its load's, such as force."""
-        own = {field.name for field in dataclasses.fields(self)}  # type: ignore[arg-type]
+        model: Any = self
+        own = {field.name for field in dataclasses.fields(model)}
         mine = {name: value for name, value in changes.items() if name in own}
         rest = {name: value for name, value in changes.items() if name not in own}
+        load = mine.get("load", model.load)
+        unknown = rest.keys() - {field.name for field in dataclasses.fields(load) if field.init}
+        if unknown:
+            raise InputError(
+                f"neither {type(self).__name__} nor {type(load).__name__} has"
+                f" {', '.join(sorted(unknown))}; their fields can be changed, such as force"
+            )
         if rest:
-            mine["load"] = dataclasses.replace(mine.get("load", self.load), **rest)  # type: ignore[attr-defined]
-        return dataclasses.replace(self, **mine)  # type: ignore[type-var]
+            mine["load"] = dataclasses.replace(load, **rest)
+        changed: Self = dataclasses.replace(model, **mine)
+        return changed

@@ -1,16 +1,17 @@
 """Axial follower forces: how much of the total force each link carries, and where.
 
-A load has a total compressive force F and a density f_a(s) >= 0 along the filament, s in [0, 1], acting
-against the tangent: f = -f_a t. On a chain of links each link carries the integral of f_a over it,
-shared by its two nodes so that the first moment is exact as well. A concentrated force is shared
-linearly by the two links whose midpoints enclose it, so that its direction, too, is accurate to
-second order; beyond the last midpoint the last link carries it alone.
+A load has a total compressive force F and a density f_a(s) >= 0 along the filament, s in [0, 1],
+acting against the tangent: f = -f_a t. On a chain of links each link carries the integral of f_a
+over it, shared by its two nodes so that the first moment is exact as well. A concentrated force is
+shared linearly by the two links whose midpoints enclose it, so that its direction, too, is accurate
+to second order; beyond the last midpoint the last link carries it alone.
 
-Source of the profiles: Ling, Guo & Kanso (2018), equations for linear, concentrated and power-law forces.
+Source of the profiles: Ling, Guo & Kanso (2018), equations for linear, concentrated and power-law
+forces.
 """
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -43,7 +44,7 @@ class Load:
         """Return the first moment about the base carried by [0, s], the integral of s f_a."""
 
     def shares(self, links: int) -> tuple[Links, Links]:
-        """Return the forces (head, foot) that each of `links` links puts on its outer and inner node.
+        """Return the forces (head, foot) that each link puts on its outer and its inner node.
 
         Both have shape (links,) and act along minus the link's tangent.
         """
@@ -91,8 +92,7 @@ class PointLoad(Load):
 class TipLoad(PointLoad):
     """A force concentrated at the free end: a point load at s = 1."""
 
-    def __init__(self, force: float) -> None:
-        super().__init__(force, 1.0)
+    position: float = field(default=1.0, init=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The contract between models and everything else: what an analysis may ask of any model.
 
-A state x (size,) holds the positions of the free nodes, node by node, in the coordinates in which the
-model moves: x, y, z in space, or x, z for a model that is confined to a plane. Everything is
+A state x (size,) holds the positions of the free nodes, node by node, in the coordinates in which
+the model moves: x, y, z in space, or x, z for a model that is confined to a plane. Everything is
 dimensionless. The constraint forces follow from the state and are not part of it.
 """
 
@@ -69,7 +69,7 @@ class Model(Protocol):
         """Return energies and powers of rows of the integrator's vector, shape (m, n)."""
 
     def nodes(self, x: State) -> Nodes:
-        """Return the positions of all nodes in space, base first; further axes in front are kept."""
+        """Return the positions of all nodes in space, base first; axes in front are kept."""
 
     def from_nodes(self, nodes: Nodes) -> State:
         """Return the state whose nodes these are."""

@@ -2,81 +2,67 @@
 
     R_i v_i = f_i = q_i - q_{i+1} - head_i t_i - foot_{i+1} t_{i+1}        node i = 1..N
     q_j = (a_{j+1} - a_j) / l_j - T_j t_j                                  force along link j
-    a_j = K_{j-1} g(c_j) (t_j - t_{j-1}),   c_j = t_{j-1} . t_j            joint at the foot of link j
+    a_j = K_{j-1} g(c_j) (t_j - t_{j-1}),   c_j = t_{j-1} . t_j         joint at the foot of link j
     g = psi / sin psi,   cos psi = c,   t_0 = e_z,   K_N = 0
     R_i = w_i [I - beta m m],   m = (t_i + t_{i+1}) / |t_i + t_{i+1}|,   beta = 1 - 1/gamma
 
-with links e_j = r_j - r_{j-1}. Rigid links: t = e / h, l = h, and |e_j| = h fixes the multiplier T_j.
-Extensible links: t = e / |e|, l = |e|, and T_j + S_j / l_j = EA (l_j / h - 1), where
-S_j = K_{j-1} g (1 - c_j) + K_j g (1 - c_{j+1}) turns the multiplier into the tension (rigid links
-absorb it). In code node i and link i count from 0; `joint[i]` sits at the foot of link i.
+with links e_j = r_j - r_{j-1}. Rigid links: t = e / h, l = h, and |e_j| = h fixes the multiplier
+T_j. Extensible links: t = e / |e|, l = |e|, and T_j + S_j / l_j = EA (l_j / h - 1), where S_j =
+K_{j-1} g (1 - c_j) + K_j g (1 - c_{j+1}) turns the multiplier into the tension (rigid links absorb
+it). In code node i and link i count from 0; `joint[i]` sits at the foot of link i.
 
 The vector y interleaves (x_i, T_i) node by node: 4 numbers in space, 3 in a plane.
 Source: the discrete Kirchhoff rod of Ling, Guo & Kanso (2018), with half-cell ends; docs/theory.
 """
 
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
-import numpy as np
+from undula.arrays import Links
 
 
-class SpatialRod(NamedTuple):
-    """Rigid links in space; tables of shape (N,)."""
+class Tables(NamedTuple):
+    """The numbers that make a linked rod what it is; arrays of shape (N,)."""
 
-    joint: np.ndarray  # K: stiffness of the joint at the foot of each link
-    weight: np.ndarray  # w: drag weight of each node
-    head: np.ndarray  # force that each link puts on its outer node, along -t
-    foot: np.ndarray  # force that each link puts on its inner node, along -t
+    joint: Links  # K: stiffness of the joint at the foot of each link
+    weight: Links  # w: drag weight of each node
+    head: Links  # force that each link puts on its outer node, along -t
+    foot: Links  # force that each link puts on its inner node, along -t
     link: float  # h: length of a link
     lag: float  # beta = 1 - 1/gamma
     tensile: float  # EA; infinite for rigid links
-    half_bandwidth = 8
-    dimension = 3
-    extensible = False
 
 
-class PlanarRod(NamedTuple):
+class SpatialRod(Tables):
+    """Rigid links in space."""
+
+    dimension: ClassVar = 3
+    extensible: ClassVar = False
+    half_bandwidth: ClassVar = 8
+
+
+class PlanarRod(Tables):
     """Rigid links in a plane that holds the axis."""
 
-    joint: np.ndarray
-    weight: np.ndarray
-    head: np.ndarray
-    foot: np.ndarray
-    link: float
-    lag: float
-    tensile: float
-    half_bandwidth = 6
-    dimension = 2
-    extensible = False
+    dimension: ClassVar = 2
+    extensible: ClassVar = False
+    half_bandwidth: ClassVar = 6
 
 
-class ExtensibleSpatialRod(NamedTuple):
+class ExtensibleSpatialRod(Tables):
     """Extensible links in space."""
 
-    joint: np.ndarray
-    weight: np.ndarray
-    head: np.ndarray
-    foot: np.ndarray
-    link: float
-    lag: float
-    tensile: float
-    half_bandwidth = 11
-    dimension = 3
-    extensible = True
+    dimension: ClassVar = 3
+    extensible: ClassVar = True
+    half_bandwidth: ClassVar = 11
 
 
-class ExtensiblePlanarRod(NamedTuple):
+class ExtensiblePlanarRod(Tables):
     """Extensible links in a plane that holds the axis."""
 
-    joint: np.ndarray
-    weight: np.ndarray
-    head: np.ndarray
-    foot: np.ndarray
-    link: float
-    lag: float
-    tensile: float
-    half_bandwidth = 8
-    dimension = 2
-    extensible = True
+    dimension: ClassVar = 2
+    extensible: ClassVar = True
+    half_bandwidth: ClassVar = 8
 
+
+Rod = SpatialRod | PlanarRod | ExtensibleSpatialRod | ExtensiblePlanarRod
 RODS = (SpatialRod, PlanarRod, ExtensibleSpatialRod, ExtensiblePlanarRod)

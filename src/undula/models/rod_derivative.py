@@ -1,7 +1,7 @@
 """The exact derivative of the linked rod's residual, in blocks (see `undula.models.rod`).
 
-With t = e / |e| for extensible links, dt = (I - t t) de / l and dl = t . de; for rigid ones dt = de / h
-and l does not change. The derivative with respect to link k of the force q_i along link i is
+With t = e / |e| for extensible links, dt = (I - t t) de / l and dl = t . de; for rigid ones dt = de
+/ h and l does not change. The derivative with respect to link k of the force q_i along link i is
 
     dq_i/dt_{i-1} = (G_i - G'_i d_i t_i) / l_i                 d_i = t_i - t_{i-1}
     dq_i/dt_{i+1} = (G_{i+1} + G'_{i+1} d_{i+1} t_i) / l_i     G = K g(c),  G' = K dg/dc
@@ -22,7 +22,7 @@ from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tang
 
 @cache
 def drag_block_kernel(dimension: int) -> Callable[..., Any]:
-    """Return `drag_block(system, t, w, i, mean, block)`: d (R_i w_i) / dt_i, the same for t_{i+1}."""
+    """Return `drag_block(system, t, w, i, mean, block)`: d (R_i w_i) / dt_i, as for t_{i+1}."""
     d, m = dimension, dimension + 1
     mean_tangent = mean_tangent_kernel(d)
 
@@ -42,7 +42,7 @@ def drag_block_kernel(dimension: int) -> Callable[..., Any]:
 
 @cache
 def link_blocks_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
-    """Return `link_blocks(system, y, t, l, blocks)`: blocks[i, s] = dq_i / de_{i-1+s}, s = 0, 1, 2."""
+    """Return `link_blocks(system, y, t, l, blocks)`: blocks[i, s] = dq_i / de_{i-1+s}."""
     d, m = dimension, dimension + 1
     cosine = cosine_kernel(d)
 
@@ -87,9 +87,17 @@ def link_blocks_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
         if extensible:
             for i in range(n):
                 for a in range(d):
-                    force = -system.joint[i] * stiffening(cosine(t, i)) * (t[i, a] - (t[i - 1, a] if i > 0 else clamp[a]))
+                    force = (
+                        -system.joint[i]
+                        * stiffening(cosine(t, i))
+                        * (t[i, a] - (t[i - 1, a] if i > 0 else clamp[a]))
+                    )
                     if i + 1 < n:
-                        force += system.joint[i + 1] * stiffening(cosine(t, i + 1)) * (t[i + 1, a] - t[i, a])
+                        force += (
+                            system.joint[i + 1]
+                            * stiffening(cosine(t, i + 1))
+                            * (t[i + 1, a] - t[i, a])
+                        )
                     for b in range(d):
                         blocks[i, 1, a, b] -= force * t[i, b] / (length[i] * length[i])
 
@@ -151,7 +159,9 @@ def derivative_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
             for a in range(d):
                 row = m * i + a
                 for b in range(d):
-                    weight = system.weight[i] * ((1.0 if a == b else 0.0) - system.lag * mean[a] * mean[b])
+                    weight = system.weight[i] * (
+                        (1.0 if a == b else 0.0) - system.lag * mean[a] * mean[b]
+                    )
                     band[row, half + b - a] += weight
                     if d == 3 and b < 2:
                         band[row, half + 1 - b - a] += turn * weight * (1.0 if b == 1 else -1.0)

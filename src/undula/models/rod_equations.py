@@ -1,4 +1,4 @@
-"""Compiled equations of the linked rod: residual, drag, rates, rotation (see `undula.models.rod`)."""
+"""Compiled equations of the linked rod: residual, drag, rates, rotation, norm."""
 
 import math
 from collections.abc import Callable
@@ -69,7 +69,7 @@ def cosine_kernel(dimension: int) -> Callable[..., Any]:
 
 @cache
 def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
-    """Return `mean_tangent(t, i, out)`: the drag's direction m at node i; gives 1/|t_i + t_{i+1}|."""
+    """Return `mean_tangent(t, i, out)`: the drag's direction at node i, gives 1/|t_i + t_{i+1}|."""
     d = dimension
 
     @kernel

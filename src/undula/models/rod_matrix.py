@@ -92,7 +92,8 @@ def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any
 
 
 for _rod in RODS:
-    implements(derivative, _rod)(derivative_kernel(_rod.dimension, _rod.extensible).py_func)
+    _derivative: Any = derivative_kernel(_rod.dimension, _rod.extensible)
+    implements(derivative, _rod)(_derivative.py_func)
     (_register_extensible if _rod.extensible else _register_rigid)(_rod)
 
 

@@ -1,8 +1,8 @@
 """Shapes that a motion starts from.
 
-Every shape is made from the inclination of the filament to its axis, a vector (a_x, a_y)(s) in radians,
-whose largest value is the amplitude; the tangent is the axis turned by it. So links have their exact
-length whatever the amplitude, and all starts meet the clamp.
+Every shape is made from the inclination of the filament to its axis, a vector (a_x, a_y)(s) in
+radians, whose largest value is the amplitude; the tangent is the axis turned by it. So links have
+their exact length whatever the amplitude, and all starts meet the clamp.
 """
 
 import numpy as np
@@ -86,7 +86,9 @@ def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
     """
     nodes = np.asarray(nodes, dtype=float)
     if nodes.ndim != 2 or nodes.shape[0] < 2 or nodes.shape[1] != 3 or not np.isfinite(nodes).all():
-        raise InputError(f"nodes of shape {nodes.shape} are no shape; give finite values (M + 1, 3)")
+        raise InputError(
+            f"nodes of shape {nodes.shape} are no shape; give finite values (M + 1, 3)"
+        )
     links = np.diff(nodes, axis=0)
     if links.shape[0] * model.dimension == model.size and amplitude == 1.0:
         return _in_plane(model, nodes)

@@ -1,9 +1,9 @@
 """Banded linear systems: factor once, solve often.
 
-A matrix A with half-bandwidth b is stored by rows, `band[i, j - i + b] = A[i, j]`, so `band` has shape
-(n, 2 b + 1) and is zero where a row sticks out of the matrix. Factors are computed in place without
-pivoting: the saddle-point matrices of constrained filaments need none, and a pivot that vanishes is
-reported.
+A matrix A with half-bandwidth b is stored by rows, `band[i, j - i + b] = A[i, j]`, so `band` has
+shape (n, 2 b + 1) and is zero where a row sticks out of the matrix. Factors are computed in place
+without pivoting: the saddle-point matrices of constrained filaments need none, and a pivot that
+vanishes is reported.
 
 The factors are A = D L U with unit triangles L, U and D the pivots (stored inverted): then both
 sweeps of a solve cost one multiply-add of latency a row. A row is eliminated while it sits in

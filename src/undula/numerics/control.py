@@ -89,7 +89,9 @@ def plan(system: Any, memory: Any, options: Any, error: Any, scale: Any) -> None
         if factor > best:
             best, best_order = factor, order - 1
     if order + 4 <= memory.differences.shape[0]:
-        higher = options.error[order + 1] * size(system, memory.differences[order + 2], options.mask)
+        higher = options.error[order + 1] * size(
+            system, memory.differences[order + 2], options.mask
+        )
         factor = factor_for(higher / scale, order + 1)
         if factor > best:
             best, best_order = factor, order + 1

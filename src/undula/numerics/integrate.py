@@ -12,8 +12,8 @@ import numpy as np
 
 from undula.compiled import entry, kernel
 from undula.numerics.control import (
-    SHORTEST_FACTOR,
     SAFETY,
+    SHORTEST_FACTOR,
     accept,
     change_step,
     choose_frame,
@@ -74,7 +74,7 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
             memory.count[FAILED] += 1
             change_step(memory, FAILURE_FACTOR)
             continue
-        integrate_rates(system, memory, work, c)
+        integrate_rates(system, work, c)
         error = step_error(system, memory, options, work) / scale
         if error <= 1.0:
             break

@@ -9,7 +9,9 @@ from undula.numerics.system import RATES
 
 #: Entries of `Memory.real`.
 TIME, STEP, PLANNED_FACTOR, FACTORED_C, FACTORED_ANGLE, CONTRACTION = range(6)
-TURN_RATE, SPEED, SHAPE_SPEED, DISPLACEMENT, STORING_RATE, SMALLEST_STEP, LARGEST_STEP = range(6, 13)
+TURN_RATE, SPEED, SHAPE_SPEED, DISPLACEMENT, STORING_RATE, SMALLEST_STEP, LARGEST_STEP = range(
+    6, 13
+)
 REALS = 13
 #: Entries of `Memory.count`.
 ORDER, PLANNED_ORDER, EQUAL_STEPS, STEPS, REJECTED, FAILED, FACTORISATIONS, SOLVES = range(8)
@@ -39,7 +41,7 @@ class Memory(NamedTuple):
     factored_at: np.ndarray
     border: np.ndarray
     real: np.ndarray
-    count: np.ndarray
+    count: np.ndarray  # type: ignore[assignment]  # hides tuple.count
 
 
 def start(

@@ -48,4 +48,3 @@ def energy_maximum(memory: Any) -> Any:
         else:
             late = middle
     return 0.5 * (early + late)
-

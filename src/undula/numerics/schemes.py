@@ -1,12 +1,14 @@
 """Coefficient tables of the stiff steppers.
 
-A backward differentiation formula of order k, on a uniform grid of step h, in backward differences D:
+A backward differentiation formula of order k, on a uniform grid of step h, in backward differences
+D:
 
-    sum_{j=1}^k gamma_j D^j y_n + (1 - kappa_k) gamma_k d = h y'(t_{n+1}),    gamma_k = sum_{j=1}^k 1/j,
+    sum_{j=1}^k gamma_j D^j y_n + (1 - kappa_k) gamma_k d = h y'(t_{n+1}),
+    gamma_k = sum_{j=1}^k 1/j,
 
-where d = y_{n+1} - sum_{j=0}^k D^j y_n. Its local error is (kappa_k gamma_k + 1/(k+1)) d to leading order.
-kappa = 0 gives the classical formulas; Klopfenstein and Shampine's kappa lowers the error at some cost
-in stability. Source: Shampine & Reichelt, SIAM J. Sci. Comput. 18 (1997) 1, table 1.
+where d = y_{n+1} - sum_{j=0}^k D^j y_n. Its local error is (kappa_k gamma_k + 1/(k+1)) d to leading
+order. kappa = 0 gives the classical formulas; Klopfenstein and Shampine's kappa lowers the error at
+some cost in stability. Source: Shampine & Reichelt, SIAM J. Sci. Comput. 18 (1997) 1, table 1.
 """
 
 from dataclasses import dataclass

@@ -4,8 +4,8 @@ Errors and corrections are measured by the system's own norm, `size`, in units o
 
     scale = atol + rtol * size(distance from the reference state).
 
-It does not change when the system turns, and a small motion is computed as accurately as a large one.
-A rod measures tangents, not positions: their errors are what the energy and the lengths feel.
+It does not change when the system turns, and a small motion is computed as accurately as a large
+one. A rod measures tangents, not positions: their errors are what the energy and the lengths feel.
 
 A frozen Newton matrix goes stale because the system turns rather than because time passes. It is
 therefore used in the orientation that it was made in: the residual is turned back, the solution
@@ -17,7 +17,6 @@ unknown, fixed by the condition that the motion in the frame has no component al
 The angle is integrated beside, like the power put in and the power dissipated, by the same formula.
 """
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,6 +54,8 @@ MOST_CORRECTIONS = 5
 DIVERGENCE = 2.0
 #: What a converging iteration may leave, as a fraction of the error allowed in a step.
 NEWTON_FRACTION = 0.05
+#: A contraction that is used unmeasured grows by this factor a step.
+CONTRACTION_AGEING = 1.5
 #: Constraints are met to this many rtol.
 CONSTRAINT_IN_RTOL = 2.0
 #: The remembered contraction is forgotten at most this fast, as in CVODE.
@@ -270,12 +271,14 @@ def iterate(
         spread(system, work, in_frame, turn)
         left = found * min(1.0, memory.real[CONTRACTION])
         if left <= NEWTON_FRACTION * scale and constraint_error(system, work.y) <= allowed:
+            if m == 0:
+                memory.real[CONTRACTION] = min(1.0, CONTRACTION_AGEING * memory.real[CONTRACTION])
             return True
     return False
 
 
 @kernel
-def integrate_rates(system: Any, memory: Any, work: Any, c: Any) -> None:
+def integrate_rates(system: Any, work: Any, c: Any) -> None:
     """Advance the angle and the integrals of power by the formula that moved the positions."""
     n = work.y.shape[0]
     for i in range(n):

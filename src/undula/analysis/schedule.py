@@ -1,0 +1,94 @@
+"""How long a run goes on, what it samples, how exactly it computes, and how it may end."""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import Literal
+
+import numpy as np
+
+from undula.errors import InputError
+from undula.models.model import Model
+from undula.numerics.schemes import NDF
+from undula.numerics.stepping import Options, options
+
+#: First interval of a run to the settled state, as a part of the one of a run over one time unit.
+FINER = 0.25
+#: Longest step of a run to the settled state, as a part of its limit: the looks must not be too
+#: rare.
+LONGEST_STEP = 0.01
+#: A matrix serves until a node has moved by this part of the length (docs/notes/stepping.md).
+STALE_AFTER = 0.01
+
+
+class Ending(Enum):
+    """Why a run is where it is."""
+
+    RUNNING = "running"
+    DONE = "done"
+    SETTLED = "settled"
+    LIMIT = "limit reached"
+    INTERRUPTED = "interrupted"
+    OUT_OF_TIME = "out of time"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """How long a run goes on, what it samples, and how exactly it computes.
+
+    Attributes
+    ----------
+    until : float or "settled"
+        Time at which the run ends [T], or until it repeats itself.
+    limit : float
+        Time at which a run to the settled state gives up [T].
+    samples : int
+        Number of samples, ends included; a run to the settled state has up to twice as many.
+    rtol, atol : float
+        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis,
+        and absolute [rad].
+    """
+
+    until: float | Literal["settled"] = 1.0
+    limit: float = 10.0
+    samples: int = 4000
+    rtol: float = 1e-6
+    atol: float = 1e-10
+
+    def __post_init__(self) -> None:
+        """Refuse values that make no run."""
+        if self.until != "settled" and not (
+            isinstance(self.until, int | float) and 0.0 < self.until < math.inf
+        ):
+            raise InputError(f"until = {self.until!r} has to be a positive number or 'settled'")
+        for name in ("limit", "rtol", "atol"):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise InputError(f"{name} = {getattr(self, name)} has to be a positive number")
+        if self.samples < 2:
+            raise InputError(f"samples = {self.samples} has to be at least 2")
+
+    @property
+    def end(self) -> float:
+        """Time at which the run ends at the latest [T]."""
+        return self.limit if self.until == "settled" else float(self.until)
+
+    @property
+    def interval(self) -> float:
+        """First interval between samples [T]."""
+        if self.until == "settled":
+            return FINER / (self.samples - 1)
+        return float(self.until) / (self.samples - 1)
+
+    def options(self, model: Model) -> Options:
+        """Return the options of the stepper for this run of `model`."""
+        return options(
+            NDF,
+            model.position_mask,
+            np.where(model.position_mask == 1.0, model.unknowns(model.straight()), 0.0),
+            rtol=self.rtol,
+            atol=self.atol,
+            stale_after=STALE_AFTER,
+            longest_step=LONGEST_STEP * self.limit if self.until == "settled" else math.inf,
+            frame=model.dimension == 3,
+        )
