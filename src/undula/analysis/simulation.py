@@ -77,10 +77,11 @@ class Simulation:
                 f" give {model.size} finite numbers"
             )
         x = model.admissible(x)
-        unknowns, speed = model.unknowns(x), float(np.abs(model.rhs(x)).max())
+        unknowns, rates = model.unknowns(x), model.rates(x)
+        speed = float(np.abs(model.positions(rates[:-RATES])).max())
         reach = schedule.atol + schedule.rtol * float(np.abs(x - model.straight()).max())
         step = reach / speed if speed > 0.0 else schedule.end * 1e-3
-        memory = start(model.system, NDF, unknowns, 0.0, min(step, schedule.end))
+        memory = start(model.system, NDF, unknowns, rates, 0.0, min(step, schedule.end))
         return cls(model, schedule, memory, schedule.interval)
 
     @property

@@ -14,6 +14,7 @@ from undula.models.rod import PlanarRod, SpatialRod
 from undula.models.rod_matrix import exact_derivative
 from undula.models.rod_velocity import observe, rate_of_change
 from undula.numerics.banded import to_dense
+from undula.numerics.system import RATES
 
 
 class LinkedRod(ABC):
@@ -74,7 +75,7 @@ class LinkedRod(ABC):
         unknowns = np.zeros((self.links, self.dimension + 1))
         unknowns[:, :-1] = np.cumsum(tangents * rigid.link, axis=0)
         flat = unknowns.ravel()
-        rate_of_change(rigid, flat, np.zeros(flat.size))
+        rate_of_change(rigid, flat, np.zeros(flat.size + RATES))
         before = np.vstack([np.eye(self.dimension)[-1], tangents[:-1]])
         cosine = np.clip(np.sum(before * tangents, axis=1), -1.0, 1.0)
         angle = np.arccos(cosine)
@@ -84,19 +85,24 @@ class LinkedRod(ABC):
 
     def rhs(self, x: State) -> State:
         """Return dx/dt."""
-        return self.positions(self._moving(x)[1])
+        return self.positions(self.rates(x)[:-RATES])
+
+    def rates(self, x: State) -> Array:
+        """Return the rates of change of the integrator's vector and of its integrals at x."""
+        return self._moving(x)[1]
 
     def _moving(self, x: State) -> tuple[Array, Array]:
-        """Return the integrator's vector at x and its velocity."""
+        """Return the integrator's vector at x and its rates of change."""
         y = np.zeros((self.links, self.dimension + 1))
         y[:, :-1] = np.asarray(x, dtype=float).reshape(self.links, self.dimension)
-        unknowns, velocity = y.ravel(), np.zeros(y.size)
+        unknowns, velocity = y.ravel(), np.zeros(y.size + RATES)
         rate_of_change(self.system, unknowns, velocity)
         return unknowns, velocity
 
     def jacobian(self, x: State) -> Array:
         """Return d rhs / dx, shape (size, size), from those of R v = f and of the constraint."""
         y, v = self._moving(x)
+        v = v[:-RATES]
         d, m, n = self.dimension, self.dimension + 1, y.size
         moving = self.position_mask == 1.0
         band = np.zeros((n, 6 * m - 1))

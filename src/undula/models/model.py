@@ -53,6 +53,9 @@ class Model(Protocol):
     def admissible(self, x: State) -> State:
         """Return the state near x that meets the model's constraints to round-off."""
 
+    def rates(self, x: State) -> Array:
+        """Return the rates of change of the integrator's vector and of its integrals at x."""
+
     def rhs(self, x: State) -> State:
         """Return dx/dt."""
 

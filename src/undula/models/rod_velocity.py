@@ -147,9 +147,11 @@ for _rod in RODS:
 
 @entry
 def rate_of_change(system: Any, y: Any, v: Any) -> None:
-    """Find multipliers (written to y) and velocity (written to v) at the positions in y (n,)."""
+    """Find the multipliers (written to y) and all rates (to v, n + RATES) at the positions in y."""
+    n = y.shape[0]
     find_multipliers(system, y)
-    find_velocity(system, y, v)
+    find_velocity(system, y, v[:n])
+    rates(system, y, v[:n], v[n:])
 
 
 @entry

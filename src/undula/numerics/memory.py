@@ -45,12 +45,20 @@ class Memory(NamedTuple):
 
 
 def start(
-    system: Any, scheme: BackwardDifferentiation, y: np.ndarray, time: float, step: float
+    system: Any,
+    scheme: BackwardDifferentiation,
+    y: np.ndarray,
+    rates: np.ndarray,
+    time: float,
+    step: float,
 ) -> Memory:
-    """Return the memory of a stepper about to take its first step from y (n,) at `time`."""
+    """Return the memory of a stepper about to take its first step from y (n,) at `time`.
+
+    `rates` (n + RATES,) is the rate of change there of the unknowns and of the integrals.
+    """
     n = y.size
     differences = np.zeros((scheme.max_order + 3, n + RATES))
-    differences[0, :n] = y
+    differences[0, :n], differences[1] = y, step * rates
     real, count = np.zeros(REALS), np.zeros(COUNTS, dtype=np.int64)
     real[[TIME, STEP, PLANNED_FACTOR, CONTRACTION, SMALLEST_STEP]] = time, step, 1.0, 1.0, np.inf
     count[[ORDER, PLANNED_ORDER]] = 1

@@ -17,6 +17,7 @@ unknown, fixed by the condition that the motion in the frame has no component al
 The angle is integrated beside, like the power put in and the power dissipated, by the same formula.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ import numpy as np
 from undula.compiled import kernel
 from undula.numerics.memory import (
     CONTRACTION,
+    DISPLACEMENT,
     FACTORED_ANGLE,
     FACTORED_C,
     FACTORISATIONS,
@@ -31,7 +33,6 @@ from undula.numerics.memory import (
     ORDER,
     SOLVES,
     STEP,
-    TURN_RATE,
 )
 from undula.numerics.schemes import BackwardDifferentiation
 from undula.numerics.system import (
@@ -58,7 +59,7 @@ NEWTON_FRACTION = 0.05
 CONTRACTION_AGEING = 1.5
 #: Constraints are met to this many rtol.
 CONSTRAINT_IN_RTOL = 2.0
-#: The remembered contraction is forgotten at most this fast, as in CVODE.
+#: The remembered contraction is forgotten at most this fast.
 CONTRACTION_MEMORY = 0.3
 
 
@@ -168,13 +169,20 @@ def spread(system: Any, work: Any, in_frame: Any, turn: Any) -> None:
 
 @kernel
 def is_stale(system: Any, memory: Any, options: Any, work: Any, c: Any, angle: Any) -> Any:
-    """Tell whether the factored matrix is no longer fit for the step at hand."""
+    """Tell whether the factored matrix is no longer fit for the step at hand.
+
+    In the frame it comes with a border proportional to the displacement, which has to be fresh in
+    proportion.
+    """
+    farthest = options.stale_after
+    if memory.count[IN_FRAME] == 1:
+        farthest *= min(1.0, memory.real[DISPLACEMENT])
     if abs(c / memory.real[FACTORED_C] - 1.0) > 1e-12:
         return True
     rotate(system, work.y, -angle, work.correction)
     for i in range(work.y.shape[0]):
         moved = abs(work.correction[i] - memory.factored_at[i]) * options.mask[i]
-        if not moved <= options.stale_after:
+        if not moved <= farthest:
             return True
     return False
 
@@ -202,10 +210,10 @@ def refactor(system: Any, memory: Any, work: Any, c: Any, turn: Any) -> Any:
 def one_correction(
     system: Any, memory: Any, options: Any, work: Any, c: Any, turn: Any, angle: Any
 ) -> Any:
-    """Apply one Newton correction; return its root mean square and the new turn."""
+    """Apply one Newton correction; return its size, that of the turn included, and the new turn."""
     n = work.y.shape[0]
     in_frame = memory.count[IN_FRAME] == 1
-    delta = work.correction
+    delta, slid = work.correction, 0.0
     residual(system, work.y, work.w, c, delta)
     if angle != 0.0:
         rotate(system, delta, -angle, delta)
@@ -217,11 +225,12 @@ def one_correction(
         slip = dot(work.phase, work.y, options.mask) - dot(work.phase, delta, options.mask)
         turn_change = slip / dot(work.phase, memory.border, options.mask)
         turn += turn_change
+        slid = turn_change * size(system, work.turning, options.mask)
         for i in range(n):
             delta[i] += turn_change * memory.border[i]
     for i in range(n):
         work.change[i] -= delta[i]
-    return size(system, delta, options.mask), turn
+    return math.hypot(size(system, delta, options.mask), slid), turn
 
 
 @kernel
@@ -229,14 +238,13 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
     """Solve for the end of the step; return whether it converged, and the turn c Omega."""
     in_frame = memory.count[IN_FRAME] == 1
     n = work.y.shape[0]
-    turn = c * memory.real[TURN_RATE] if in_frame else 0.0
     if in_frame:
         for i in range(n):
             work.y[i] = work.predicted[i] - work.psi[i]
         generator(system, work.y, work.phase)
     for attempt in range(2):
         work.change[:] = 0.0
-        turn = c * memory.real[TURN_RATE] if in_frame else 0.0
+        turn = work.psi[n] if in_frame else 0.0  # extrapolates the rate
         spread(system, work, in_frame, turn)
         angle = 0.0 if in_frame else work.predicted[n] - memory.real[FACTORED_ANGLE]
         fresh = attempt == 1 or is_stale(system, memory, options, work, c, angle)

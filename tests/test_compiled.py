@@ -1,0 +1,105 @@
+"""The cache of compiled code notices every change of the package."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from numba.core import caching
+
+from undula import compiled
+
+INNER = "from toy.compiled import kernel\n\n\n@kernel\ndef inner(x):\n    return x + {}\n"
+OUTER = """
+from toy.compiled import entry
+from toy.inner import inner
+
+
+@entry
+def outer(x):
+    return inner(x)
+"""
+SHOW = "from toy.outer import outer; print(outer(1.0), sum(outer.stats.cache_hits.values()))"
+
+
+def digest_of(package: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.setattr(compiled, "PACKAGE", package)
+    return compiled.package_digest.__wrapped__()
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """Return the folder of a package with a file in a folder of its own."""
+    inner = tmp_path / "package" / "inner"
+    inner.mkdir(parents=True)
+    (inner.parent / "one.py").write_text("a = 1\n")
+    (inner / "two.py").write_text("b = 2\n")
+    return inner.parent
+
+
+def test_the_digest_of_the_same_sources_is_the_same_wherever_they_lie(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = package.parent / "elsewhere"
+    shutil.copytree(package, elsewhere)
+    assert digest_of(package, monkeypatch) == digest_of(elsewhere, monkeypatch)
+
+
+@pytest.mark.parametrize("name", ["one.py", "inner/two.py"])
+def test_the_digest_changes_with_a_character_of_any_file(
+    package: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = digest_of(package, monkeypatch)
+    (package / name).write_text("a = 3\n")
+    assert digest_of(package, monkeypatch) != before
+
+
+def test_the_digest_changes_when_a_file_comes_goes_or_is_renamed(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    digests = [digest_of(package, monkeypatch)]
+    (package / "three.py").write_text("c = 3\n")
+    digests.append(digest_of(package, monkeypatch))
+    (package / "three.py").rename(package / "four.py")
+    digests.append(digest_of(package, monkeypatch))
+    (package / "one.py").unlink()
+    digests.append(digest_of(package, monkeypatch))
+    assert len(set(digests)) == 4
+
+
+def test_the_digest_does_not_depend_on_files_that_are_no_sources(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = digest_of(package, monkeypatch)
+    (package / "__pycache__").mkdir()
+    (package / "__pycache__" / "one.nbi").write_bytes(b"compiled")
+    assert digest_of(package, monkeypatch) == before
+
+
+def test_code_outside_the_package_is_cached_as_if_the_package_were_not_there() -> None:
+    ours, theirs = caching.CacheImpl._locator_classes[:3], caching.CacheImpl._locator_classes[3:]
+    assert not any(locator.from_function(shutil.copytree, shutil.__file__) for locator in ours)
+    assert caching.InTreeCacheLocator in theirs
+
+
+def show(folder: Path) -> list[str]:
+    """Run the toy in a fresh process; return what it computed and its hits of the cache."""
+    command = [sys.executable, "-c", SHOW]
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+    return run.stdout.split()
+
+
+def test_a_changed_kernel_is_compiled_anew_where_another_file_calls_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # edits within a second look like none
+    toy = tmp_path / "toy"
+    toy.mkdir()
+    shutil.copy(compiled.__file__, toy / "compiled.py")
+    (toy / "outer.py").write_text(OUTER)
+    (toy / "inner.py").write_text(INNER.format(1.0))
+    assert show(tmp_path) == ["2.0", "0"]
+    assert show(tmp_path) == ["2.0", "1"]
+    (toy / "inner.py").write_text(INNER.format(5.0))
+    assert show(tmp_path) == ["6.0", "0"]
