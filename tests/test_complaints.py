@@ -60,7 +60,7 @@ def complaint_on(**tables: Any) -> str:
         ("model", "drag_ratio", 0.5, "model.drag_ratio = 0.5 is out of range; model.drag_ratio"),
         ("model", "confined", 1, "model.confined = 1 is a whole number; model.confined takes true"),
         ("start", "amplitude", 0.0, "start.amplitude = 0.0 is out of range; start.amplitude takes"),
-        ("start", "amplitude", 0.6, "start.amplitude = 0.6 is out of range; start.amplitude takes"),
+        ("start", "amplitude", 3.2, "start.amplitude = 3.2 is out of range; start.amplitude takes"),
         ("start", "seed", -1, "start.seed = -1 is out of range; start.seed takes a whole number"),
         ("start", "seed", 2**63, "start.seed = 9223372036854775808 is out of range; start.seed"),
         ("time", "until", "setled", "time.until = 'setled' is text; time.until takes a number"),

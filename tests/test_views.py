@@ -286,3 +286,40 @@ def test_impossible_numbers_are_named(bad: dict[str, int], tmp_path: Path) -> No
     with pytest.raises(InputError, match=next(iter(bad))):
         movie(spinning(), tmp_path / "run.mp4", **bad)
     assert not list(tmp_path.iterdir())
+
+
+def seen_closely(shape: Shape, samples: int, since: float, **summary) -> xr.Dataset:
+    """A run with sparse samples, and its last part once more with 40 samples a period of 1/30."""
+    run = record(shape, samples, **summary)
+    fine = record(shape, 1201, **summary).sel(time=slice(since, None))
+    names = {name: f"close_{name}" for name in ("time", *fine.data_vars)}
+    return run.merge(fine.drop_vars(["arclength", "axis"]).rename(names), combine_attrs="override")
+
+
+def sparse_flapping(since: float = 0.5) -> xr.Dataset:
+    return seen_closely(wave, 101, since, verdict="planar flapping", frequency=30.0)
+
+
+def test_the_close_up_of_a_sparsely_sampled_run_gives_the_shapes_of_its_last_period() -> None:
+    figure = portrait(sparse_flapping(), shapes=10)
+    drawn = np.array([np.transpose(line.get_data_3d()) for line in marked(figure, "shape")])
+    expected = wave(1.0 - np.linspace(0, 1, 10, endpoint=False)[::-1] / 30.0)
+    # 40 samples a period: 0.0049 (2 pi / 40)^6 is below 1e-7; the run alone has 3.3 a period.
+    np.testing.assert_allclose(drawn, expected, atol=1e-6)
+    assert "too few to join" not in words(figure)
+    assert "last 4 periods" in words(figure)
+
+
+def test_a_movie_takes_its_slow_part_from_the_close_up() -> None:
+    scene = read_scene(sparse_flapping())
+    slow = frame_times(scene, 100)[25:]
+    assert slow[0] == pytest.approx(1.0 - 4 / 30.0)
+    np.testing.assert_allclose(nodes_at(scene, slow), wave(slow), atol=1e-6)  # as above
+
+
+def test_a_close_up_shorter_than_four_periods_is_not_gone_beyond() -> None:
+    run = sparse_flapping(since=0.95)
+    scene = read_scene(run)
+    assert scene.focus is not None
+    assert scene.focus[0] == pytest.approx(float(run["close_time"][0]))
+    assert "last part" in words(portrait(run))

@@ -1,18 +1,44 @@
 """undula: elastic microfilaments in viscous fluid under axial follower forces.
 
 Build a model (`Filament` and a load), give it a start, and `integrate`; see docs/index.md.
+Each name is imported when it is first asked for, so that the command line answers at once.
 """
 
-from undula import views
-from undula.analysis.integrate import integrate
-from undula.analysis.record import dataset_of
-from undula.analysis.run import Run
-from undula.errors import InputError
-from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
-from undula.models.scales import Scales
-from undula.models.starts import from_state, helix, kicked, mode, planar, straight
-from undula.studies.store import load_result
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import undula.views as views
+    from undula.analysis.integrate import integrate
+    from undula.analysis.record import dataset_of
+    from undula.analysis.run import Run
+    from undula.errors import InputError
+    from undula.models.filament import Filament
+    from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+    from undula.models.scales import Scales
+    from undula.models.starts import from_state, helix, kicked, mode, planar, straight
+    from undula.studies.store import load_result
+
+_HOMES = {
+    "Filament": "undula.models.filament",
+    "InputError": "undula.errors",
+    "LinearLoad": "undula.models.loads",
+    "Load": "undula.models.loads",
+    "PointLoad": "undula.models.loads",
+    "PowerLoad": "undula.models.loads",
+    "Run": "undula.analysis.run",
+    "Scales": "undula.models.scales",
+    "TipLoad": "undula.models.loads",
+    "dataset_of": "undula.analysis.record",
+    "from_state": "undula.models.starts",
+    "helix": "undula.models.starts",
+    "integrate": "undula.analysis.integrate",
+    "kicked": "undula.models.starts",
+    "load_result": "undula.studies.store",
+    "mode": "undula.models.starts",
+    "planar": "undula.models.starts",
+    "straight": "undula.models.starts",
+}
 
 __all__ = [
     "Filament",
@@ -35,3 +61,15 @@ __all__ = [
     "straight",
     "views",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "views":
+        return import_module("undula.views")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'undula' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -54,11 +54,16 @@ caching.CacheImpl._locator_classes[:0] = [
 # Not "nnan" and "ninf": a non-finite state has to be noticed.
 _FASTMATH = {"contract", "reassoc", "arcp", "nsz"}
 
-#: Compile a kernel; inlined into its callers by LLVM where that pays, and not cached by itself.
-kernel = numba.njit(fastmath=_FASTMATH, error_model="numpy")
+#: Compile a kernel, to become a part of whatever calls it. Left as a function of its own, it would
+#: be shared between compiled modules in a process that compiles and not in one that loads them from
+#: the cache, and the two would differ by round-off.
+kernel = numba.njit(fastmath=_FASTMATH, error_model="numpy", forceinline=True)
 
 #: The same for recurrences, whose sums must keep the order in which their terms become known.
-kernel_in_order = numba.njit(fastmath={"contract", "nsz"}, error_model="numpy")
+kernel_in_order = numba.njit(fastmath={"contract", "nsz"}, error_model="numpy", forceinline=True)
+
+#: The same for what generic functions are resolved to.
+RESOLVED: Any = {"forceinline": True}
 
 #: Compile an entry point, called from Python and cached on disk.
 entry = numba.njit(fastmath=_FASTMATH, error_model="numpy", cache=True, nogil=True)

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from undula.errors import InputError
+from undula.errors import InputError, is_number
 from undula.models.model import Model
 from undula.numerics.schemes import NDF
 from undula.numerics.stepping import Options, options
@@ -58,15 +58,14 @@ class Schedule:
 
     def __post_init__(self) -> None:
         """Refuse values that make no run."""
-        if self.until != "settled" and not (
-            isinstance(self.until, int | float) and 0.0 < self.until < math.inf
-        ):
+        if self.until != "settled" and not (is_number(self.until) and self.until > 0.0):
             raise InputError(f"until = {self.until!r} has to be a positive number or 'settled'")
         for name in ("limit", "rtol", "atol"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise InputError(f"{name} = {getattr(self, name)} has to be a positive number")
-        if self.samples < 2:
-            raise InputError(f"samples = {self.samples} has to be at least 2")
+            value = getattr(self, name)
+            if not (is_number(value) and value > 0.0):
+                raise InputError(f"{name} = {value!r} has to be a positive finite number")
+        if not isinstance(self.samples, int | np.integer) or self.samples < 2:
+            raise InputError(f"samples = {self.samples!r} has to be a whole number, at least 2")
 
     @property
     def end(self) -> float:

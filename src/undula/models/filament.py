@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from undula.errors import InputError
+from undula.errors import InputError, is_number
 from undula.models.linked_rod import LinkedRod
 from undula.models.loads import Load
 from undula.models.rod import (
@@ -64,22 +64,30 @@ class Filament(LinkedRod):
 
     def __post_init__(self) -> None:
         """Refuse values that make no filament."""
-        if not isinstance(self.segments, int) or self.segments < FEWEST_SEGMENTS:
+        if (
+            isinstance(self.segments, bool)
+            or not isinstance(self.segments, int | np.integer)
+            or self.segments < FEWEST_SEGMENTS
+        ):
             raise InputError(
-                f"segments = {self.segments} is not enough for a filament;"
+                f"segments = {self.segments!r} makes no filament;"
                 f" give a whole number of at least {FEWEST_SEGMENTS}"
             )
-        if not (math.isfinite(self.drag_ratio) and self.drag_ratio >= 1.0):
+        if not isinstance(self.load, Load):
+            raise InputError(f"load = {self.load!r} is no load; give one such as TipLoad(75.0)")
+        if not (is_number(self.drag_ratio) and self.drag_ratio >= 1.0):
             raise InputError(
-                f"drag_ratio = {self.drag_ratio} has to be a finite number, at least 1"
+                f"drag_ratio = {self.drag_ratio!r} has to be a finite number, at least 1"
             )
+        if not isinstance(self.confined, bool):
+            raise InputError(f"confined = {self.confined!r} has to be True or False")
         if self.inextensibility not in ("exact", "weak"):
             raise InputError(
                 f"inextensibility = {self.inextensibility!r} has to be 'exact' or 'weak'"
             )
-        if not (math.isfinite(self.tensile_stiffness) and self.tensile_stiffness > 0.0):
+        if not (is_number(self.tensile_stiffness) and self.tensile_stiffness > 0.0):
             raise InputError(
-                f"tensile_stiffness = {self.tensile_stiffness} has to be a positive finite number"
+                f"tensile_stiffness = {self.tensile_stiffness!r} has to be a positive finite number"
             )
 
     @cached_property

@@ -150,9 +150,12 @@ class LinkedRod(ABC):
         return Energetics(*out.T)
 
     def straight(self) -> State:
-        """Return the straight state along the axis, an equilibrium."""
+        """Return the straight state along the axis, an equilibrium; extensible links are short."""
+        system = self.system
+        carried = np.cumsum((system.head + np.append(system.foot[1:], 0.0))[::-1])[::-1]
         x = np.zeros((self.links, self.dimension))
         x[:, -1] = np.arange(1, self.links + 1) / self.links
+        x[:, -1] -= np.cumsum(system.link * carried / system.tensile)
         return x.ravel()
 
     def nodes(self, x: State) -> Nodes:

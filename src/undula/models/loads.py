@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from undula.arrays import Links, Points
-from undula.errors import InputError
+from undula.errors import InputError, is_number
 
 
 @dataclass(frozen=True)
@@ -138,5 +138,5 @@ class PowerLoad(Load):
 
 def _require(load: Load, name: str, lowest: float, highest: float, wanted: str) -> None:
     value = getattr(load, name)
-    if not (lowest <= value <= highest and np.isfinite(value)):
-        raise InputError(f"{type(load).__name__}: {name} = {value} has to be {wanted}")
+    if not (is_number(value) and lowest <= value <= highest):
+        raise InputError(f"{type(load).__name__}: {name} = {value!r} has to be {wanted}")

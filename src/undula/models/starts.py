@@ -8,7 +8,7 @@ their exact length whatever the amplitude, and all starts meet the clamp.
 import numpy as np
 
 from undula.arrays import Array, Nodes, State
-from undula.errors import InputError
+from undula.errors import InputError, is_number
 from undula.models.model import Model
 
 #: Modes of the inclination in a random kick, and the decay of their size with their number.
@@ -31,6 +31,8 @@ def kicked(model: Model, amplitude: float = 1e-2, *, seed: int = 1) -> State:
     seed : int
         Seed of the random numbers: the same seed gives the same shape at any number of links.
     """
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise InputError(f"seed = {seed!r} has to be a whole number, at least 0")
     random = np.random.default_rng(seed)
     s = _link_midpoints(model)
     modes = np.arange(1, _KICK_MODES + 1)
@@ -41,7 +43,7 @@ def kicked(model: Model, amplitude: float = 1e-2, *, seed: int = 1) -> State:
 
 def planar(model: Model, amplitude: float = 1e-2, *, angle: float = 0.0) -> State:
     """Return a smooth bend in the plane through the axis at azimuth `angle` [rad]."""
-    _refuse_angle(model, angle)
+    _check_angle(model, angle)
     bend = np.sin(0.5 * np.pi * _link_midpoints(model))
     return _inclined(model, bend[:, None] * _direction(angle), amplitude)
 
@@ -63,7 +65,7 @@ def mode(model: Model, amplitude: float = 1e-2, *, angle: float = 0.0) -> State:
     The leading eigenvalue is the one with the largest real part; of a complex mode, whose phase is
     free, the real part is taken where its imaginary part vanishes at the tip.
     """
-    _refuse_angle(model, angle)
+    _check_angle(model, angle)
     deflection = leading_mode(model)[1]
     shape = np.real(deflection / deflection[-1])
     slope = np.diff(shape, prepend=0.0)
@@ -97,7 +99,8 @@ def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
     size = np.arctan2(across, tangents[:, 2])
     factor = np.divide(size, across, out=np.ones_like(size), where=across > 0.0)
     inclination = factor[:, None] * tangents[:, :2]
-    s = (np.arange(links.shape[0]) + 0.5) / links.shape[0]
+    s = np.append(0.0, (np.arange(links.shape[0]) + 0.5) / links.shape[0])
+    inclination = np.vstack([np.zeros(2), inclination])  # the clamp
     at_links = [np.interp(_link_midpoints(model), s, inclination[:, a]) for a in range(2)]
     return _bent(model, amplitude * np.stack(at_links, axis=-1))
 
@@ -111,15 +114,17 @@ def _direction(angle: float) -> Array:
     return np.array([np.cos(angle), np.sin(angle)])
 
 
-def _refuse_angle(model: Model, angle: float) -> None:
+def _check_angle(model: Model, angle: float) -> None:
+    if not is_number(angle):
+        raise InputError(f"angle = {angle!r} has to be a finite number of radians")
     if model.dimension == 2 and angle != 0.0:
         raise InputError("a confined model moves in the x-z plane; leave the angle at 0")
 
 
 def _inclined(model: Model, inclination: Array, amplitude: float) -> State:
     """Return the shape with the given inclination (links, 2), scaled to its largest value."""
-    if not (np.isfinite(amplitude) and 0.0 < amplitude <= np.pi):
-        raise InputError(f"amplitude = {amplitude} has to be a number in (0, pi]")
+    if not (is_number(amplitude) and 0.0 < amplitude <= np.pi):
+        raise InputError(f"amplitude = {amplitude!r} has to be a number in (0, pi]")
     if model.dimension == 2:
         inclination = inclination * [1.0, 0.0]
     return _bent(model, amplitude * inclination / np.linalg.norm(inclination, axis=1).max())

@@ -25,6 +25,7 @@ from typing import Any
 
 from numba.extending import overload
 
+from undula.compiled import RESOLVED
 from undula.numerics import banded
 
 #: What `rates` gives: the rate of turning, the power put in, the power dissipated.
@@ -52,7 +53,7 @@ def generic(default: Callable[..., Any]) -> Callable[..., Any]:
         return _implementations.get((default, system.instance_class), default)
 
     default.__signature_keys__ = inspect.signature(default).parameters.keys()  # type: ignore[attr-defined]
-    overload(default, strict=False)(choose)
+    overload(default, strict=False, jit_options=RESOLVED)(choose)
     return default
 
 
@@ -119,13 +120,13 @@ def solve(system: Any, band: Any, x: Any) -> Any:
     """Overwrite x (n,) by the solution of the factored system."""
 
 
-@overload(factor, strict=False)
+@overload(factor, strict=False, jit_options=RESOLVED)
 def _factor(system: Any, band: Any) -> Any:
     kernel = banded.factor_kernel(system.instance_class.half_bandwidth)
     return lambda system, band: kernel(band)  # noqa: ARG005
 
 
-@overload(solve, strict=False)
+@overload(solve, strict=False, jit_options=RESOLVED)
 def _solve(system: Any, band: Any, x: Any) -> Any:
     kernel = banded.solve_kernel(system.instance_class.half_bandwidth)
     return lambda system, band, x: kernel(band, x)  # noqa: ARG005

@@ -35,6 +35,11 @@ class RunInput(Table):
                 "start.shape = 'helix' leaves the plane that model.confined = true keeps; use"
                 " start.shape = 'planar' or model.confined = false"
             )
+        if self.model.confined and self.start.angle != 0.0:
+            raise conflict(
+                f"start.angle = {self.start.angle} leaves the plane that model.confined = true"
+                " keeps; use start.angle = 0 or model.confined = false"
+            )
         return self
 
     @property

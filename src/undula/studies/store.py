@@ -57,7 +57,7 @@ def write_run(
     write_whole(path, _image(dataset, checkpoint), overwrite=overwrite)
 
 
-def load_result(path: Path) -> xr.Dataset:
+def load_result(path: Path | str) -> xr.Dataset:
     """Read the trajectory, observables and attributes of a stored run.
 
     Parameters
@@ -75,7 +75,7 @@ def load_result(path: Path) -> xr.Dataset:
     InputError
         The file is missing, unreadable, cut short, or not a result file of undula.
     """
-    return _read(path, group=None)
+    return _read(Path(path), group=None)
 
 
 def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:

@@ -3,6 +3,7 @@
 Numbers are dimensionless: lengths in L, forces in B/L^2, times in zeta_perp L^4/B.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal, Self
 
@@ -99,12 +100,13 @@ class StartTable(Table):
     shape
         The family of starts.
     amplitude
-        Size of the departure from straight, above 0 and at most 0.5; not for ``straight`` and
-        ``state``.
+        Largest inclination to the axis, radians, above 0 and at most pi; not for ``straight``
+        and ``state``.
     seed
         Seed of the random kick, from 0 to 2^63 - 1; for ``kicked``.
     angle
-        Azimuth of the plane of the start, radians; for ``planar`` and ``mode``.
+        Azimuth of the plane of the start, radians; for ``planar`` and ``mode``, and 0 for a
+        confined model.
     handedness
         Sense of the helix, ``"right"`` or ``"left"``; for ``helix``.
     file
@@ -117,7 +119,7 @@ class StartTable(Table):
         description="'kicked', 'straight', 'planar', 'helix', 'mode' or 'state'",
     )
     amplitude: float = Field(
-        default=1e-2, gt=0.0, le=0.5, description="a number above 0 and at most 0.5"
+        default=1e-2, gt=0.0, le=math.pi, description="a number above 0 and at most pi (radians)"
     )
     seed: int = Field(default=1, ge=0, lt=2**63, description="a whole number from 0 to 2^63 - 1")
     angle: float = Field(default=0.0, description="a finite number (radians)")
@@ -154,9 +156,9 @@ class TimeTable(Table):
     samples
         Number of stored times, at least 2.
     rtol
-        Relative error tolerance of a step, from 1e-12 to 1e-2.
+        Error tolerance of a step relative to the inclination of the filament, from 1e-12 to 1e-2.
     atol
-        Absolute error tolerance of a step, in L, above 0.
+        Absolute error tolerance of a step, radians, above 0.
     """
 
     until: Annotated[float, Field(gt=0.0)] | Literal["settled"] = Field(
@@ -165,6 +167,6 @@ class TimeTable(Table):
     limit: float = Field(default=10.0, gt=0.0, description="a number above 0")
     samples: int = Field(default=4000, ge=2, description="a whole number of at least 2")
     rtol: float = Field(default=1e-6, ge=1e-12, le=1e-2, description="a number from 1e-12 to 1e-2")
-    atol: float = Field(default=1e-9, gt=0.0, description="a number above 0")
+    atol: float = Field(default=1e-10, gt=0.0, description="a number above 0")
 
     only_with: ClassVar[Mapping[str, OnlyWith]] = {"limit": OnlyWith("until", ("settled",))}

@@ -111,9 +111,7 @@ def _build(scene: Scene, times: Floats) -> Stage:
     canvas: Any = FigureCanvasAgg(figure)
     figure.text(0.022, 0.95, headline(scene), fontsize=11.5)
     clock = figure.text(0.022, 0.905, "", color=style.QUIET, animated=True)
-    rows = draw_traces(
-        figure, scene, (tip_row(scene), energy_row(scene)), left=0.555, right=0.975, top=0.88
-    )
+    rows = draw_traces(figure, scene, (tip_row, energy_row), left=0.555, right=0.975, top=0.88)
     markers = tuple(
         axes.axvline(scene.start, color=style.INK, lw=1.2, animated=True)
         for row in rows

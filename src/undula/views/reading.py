@@ -10,6 +10,7 @@ from undula.errors import InputError
 from undula.views.scene import Floats, Scene, turning_points
 
 NEEDED = ("nodes", "bending_energy", "active_power", "dissipation", "rotation_angle")
+_CLOSE = "close_"
 
 
 def read_scene(run: xr.Dataset) -> Scene:
@@ -18,7 +19,9 @@ def read_scene(run: xr.Dataset) -> Scene:
     Parameters
     ----------
     run : xarray.Dataset
-        A stored run: dims time, node, axis; the variables in `NEEDED`; attribute "summary".
+        A stored run: dims time, node, axis; the variables in `NEEDED`; attribute "summary". If it
+        has them once more as "close_nodes" and so on, with the dim close_time, they show its last
+        part more finely.
 
     Returns
     -------
@@ -39,24 +42,46 @@ def read_scene(run: xr.Dataset) -> Scene:
     times = _floats(run["time"])
     if len(times) < 2:
         raise InputError(f"the run has {len(times)} sample(s), a view needs at least 2: run longer")
-    nodes = _floats(run["nodes"].transpose("time", "node", "axis"))
+    duration = float(times[-1] - times[0])
+    return _scene(run, "", summary, duration, _close_up(run, summary, duration))
+
+
+def _close_up(run: xr.Dataset, summary: Mapping[str, object], duration: float) -> Scene | None:
+    """Take the close-up of a run; a run that ends at rest is told by the whole of it alone."""
+    stored = run.sizes.get(f"{_CLOSE}time", 0) >= 2
+    if not stored or str(summary.get("verdict", "")).startswith("straight"):
+        return None
+    return _scene(run, _CLOSE, summary, duration, None)
+
+
+def _scene(
+    run: xr.Dataset,
+    prefix: str,
+    summary: Mapping[str, object],
+    duration: float,
+    close: Scene | None,
+) -> Scene:
+    """Take the variables with a prefix from a run that goes on for `duration` in all."""
+    times = _floats(run[f"{prefix}time"])
+    nodes = _floats(run[f"{prefix}nodes"].transpose(f"{prefix}time", "node", "axis"))
     verdict, frequency = str(summary.get("verdict", "")), _rate(summary.get("frequency"))
-    turn = _smoothing_turn(nodes[:, -1], _floats(run["rotation_angle"]))
-    period = _period(verdict, frequency, float(times[-1] - times[0]))
+    turn = _smoothing_turn(nodes[:, -1], _floats(run[f"{prefix}rotation_angle"]))
+    period = _period(verdict, frequency, duration)
     cycle = _cycle(nodes[:, -1], turn, times, period, _rate(summary.get("shape_frequency")))
     return Scene(
         times,
         nodes,
         turn,
-        _floats(run["bending_energy"]),
-        _floats(run["active_power"]),
-        _floats(run["dissipation"]),
+        _floats(run[f"{prefix}bending_energy"]),
+        _floats(run[f"{prefix}active_power"]),
+        _floats(run[f"{prefix}dissipation"]),
         load=str(summary.get("load", "")),
         verdict=verdict,
         frequency=frequency,
         period=period,
         cycle=cycle,
         settled_from=_number(summary.get("settled_from")),
+        close=close,
     )
 
 

@@ -55,8 +55,19 @@ def nodes_at(scene: Scene, asked: Floats, nodes: slice = slice(None)) -> Floats:
     Returns
     -------
     ndarray of shape (k, n, 3)
-        Positions [L]; those of the nearest sample if the samples are too sparse to join.
+        Positions [L], from the close-up where it reaches; those of the nearest sample if the
+        samples are too sparse to join.
     """
+    if scene.close is None:
+        return _nodes_among_samples(scene, asked, nodes)
+    late = asked >= scene.close.start
+    early = _nodes_among_samples(scene, asked[~late], nodes)
+    positions = np.empty((len(asked), *early.shape[1:]))
+    positions[~late], positions[late] = early, _nodes_among_samples(scene.close, asked[late], nodes)
+    return positions
+
+
+def _nodes_among_samples(scene: Scene, asked: Floats, nodes: slice) -> Floats:
     positions = scene.nodes[:, nodes]
     if not scene.interpolable:
         return positions[_nearest(scene.times, asked)]

@@ -37,6 +37,8 @@ class Scene:
         Shortest time [T] in which the motion swings to and fro in the frame of `turn`.
     settled_from : float or None
         Time [T] from which the motion counts as settled.
+    close : Scene or None
+        The last part of the run once more, at finer intervals, if it has been stored.
     """
 
     times: Floats
@@ -51,6 +53,12 @@ class Scene:
     period: float | None
     cycle: float | None
     settled_from: float | None
+    close: "Scene | None" = None
+
+    @property
+    def detail(self) -> "Scene":
+        """What shows single periods: the close-up of the run if there is one, or the run itself."""
+        return self.close or self
 
     @property
     def start(self) -> float:
@@ -81,6 +89,8 @@ class Scene:
     @property
     def swings(self) -> float:
         """Number of cycles that the whole run goes through, as seen in the laboratory."""
+        if self.close is not None:
+            return self.close.swings * self.duration / self.close.duration
         return max(turning_points(self.nodes[:, -1, k]) for k in (0, 1)) / 2
 
     @property
@@ -106,6 +116,8 @@ class Scene:
             length = PERIODS_IN_FOCUS * self.period
         else:
             length = self.duration * 2 * PERIODS_IN_FOCUS / max(self.swings, 1.0)
+        if self.close is not None:
+            length = min(length, self.close.duration)
         return (self.end - length, self.end) if length < self.duration / 1.6 else None
 
 

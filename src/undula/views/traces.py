@@ -1,6 +1,6 @@
 """Quantities against time: the whole run on the left, its last few periods on the right."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,12 +15,17 @@ from undula.views.scene import PERIODS_IN_FOCUS, Floats, Scene, turning_points
 _CYCLES_AS_LINES = 25
 _BANDS = 150
 _POINTS = 800
-_POINTS_PER_CYCLE = 24
+_POINTS_PER_CYCLE = 48
 _MARK_SAMPLES_BELOW = 60
 
 
 def draw_traces(
-    figure: Figure, scene: Scene, rows: Sequence[Row], left: float, right: float, top: float
+    figure: Figure,
+    scene: Scene,
+    rows: Sequence[Callable[[Scene], Row]],
+    left: float,
+    right: float,
+    top: float,
 ) -> list[list[Axes]]:
     """Draw rows of quantities against a shared time.
 
@@ -30,8 +35,8 @@ def draw_traces(
         Where to draw them.
     scene : Scene
         The run.
-    rows : sequence of Row
-        From top to bottom, at least two.
+    rows : sequence of callable
+        What gives each row, from top to bottom, at least two.
     left, right, top : float
         Edges of the block in parts of the figure.
 
@@ -47,13 +52,12 @@ def draw_traces(
     )
     axes = [[figure.add_subplot(grid[i, j]) for j in range(columns)] for i in range(len(rows))]
     for row, line in zip(rows, axes, strict=True):
-        _draw_row(scene, row, line)
+        _draw_row(scene, row(scene), row(scene.detail), line)
     for place, axis in enumerate(axes[-1]):
         axis.set_xlabel(style.TIME_LABEL if place == 0 else style.SHORT_TIME_LABEL)
     axes[0][0].set_title("whole run", loc="left")
     if focus is not None:
-        name = f"last {PERIODS_IN_FOCUS} periods" if scene.period else "last part"
-        axes[0][1].set_title(name, loc="left")
+        axes[0][1].set_title(_focus_name(scene, focus), loc="left")
     if scene.settled is not None:
         axes[1][0].set_title("shaded: settled", loc="right")
     for line in axes[:-1]:
@@ -84,24 +88,31 @@ def band(times: Floats, values: Floats, cycles: float) -> tuple[Floats, Floats, 
     return np.linspace(times[0], times[-1], len(first)), low, high
 
 
-def _draw_row(scene: Scene, row: Row, line: list[Axes]) -> None:
+def _focus_name(scene: Scene, focus: tuple[float, float]) -> str:
+    if scene.period is None or focus[1] - focus[0] < 0.99 * PERIODS_IN_FOCUS * scene.period:
+        return "last part"
+    return f"last {PERIODS_IN_FOCUS} periods"
+
+
+def _draw_row(scene: Scene, row: Row, near: Row, line: list[Axes]) -> None:
+    """Draw a row of the whole run, and beside it what is near in time."""
     whole = line[0]
     whole.set_ylabel(row.label)
     _shade(scene, whole)
     for curve in row.curves:
-        cycles = _cycles(curve.samples)
+        cycles = _cycles(scene, curve.samples)
         if cycles > _CYCLES_AS_LINES:
             _draw_band(whole, scene, curve, cycles)
         else:
             _draw_line(whole, scene, curve, (scene.start, scene.end))
     whole.set_xlim(scene.start, scene.end)
     if len(line) == 2 and scene.focus is not None:
-        for curve in row.curves:
-            _draw_line(line[1], scene, curve, scene.focus)
+        for curve in near.curves:
+            _draw_line(line[1], scene.detail, curve, scene.focus)
         line[1].set_xlim(*scene.focus)
         line[1].tick_params(labelleft=False)
         line[1].set_facecolor(style.FOCUS)
-    _scale(line, row)
+    _scale(line, [*row.curves, *near.curves])
     if len(row.curves) > 1:
         _name_curves(line[-1], row)
 
@@ -115,9 +126,11 @@ def _draw_line(axes: Axes, scene: Scene, curve: Curve, window: tuple[float, floa
         axes.plot(scene.times[inside], curve.samples[inside], ".", color=curve.colour, ms=3.5)
 
 
-def _cycles(values: Floats) -> float:
+def _cycles(scene: Scene, values: Floats) -> float:
+    """Count the cycles of a curve; one that turns back often in a period has one cycle in it."""
     least = 1e-3 * max(float(np.ptp(values)), 1e-3 * float(np.abs(values).max()), 1e-12)
-    return turning_points(values, least) / 2
+    turns = turning_points(values, least) / 2
+    return turns if scene.period is None else min(turns, scene.duration / scene.period)
 
 
 def _draw_band(axes: Axes, scene: Scene, curve: Curve, cycles: float) -> None:
@@ -140,9 +153,9 @@ def _shade(scene: Scene, axes: Axes) -> None:
         axes.axvspan(*scene.focus, color=style.FOCUS, lw=0)
 
 
-def _scale(line: list[Axes], row: Row) -> None:
+def _scale(line: list[Axes], curves: Sequence[Curve]) -> None:
     """Give both columns one scale, which a short spike at the start does not decide."""
-    bounds = np.array([_bounds(curve.samples) for curve in row.curves])
+    bounds = np.array([_bounds(curve.samples) for curve in curves])
     low, high = float(bounds[:, 0].min()), float(bounds[:, 1].max())
     margin = 0.1 * (high - low) or max(0.1 * abs(high), 1e-3)
     for axes in line:

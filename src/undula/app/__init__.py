@@ -1,0 +1,1 @@
+"""The face: the commands, their progress, their answers and their exit status."""

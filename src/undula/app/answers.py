@@ -1,0 +1,78 @@
+"""What a command says: its answer on standard output, everything else on standard error."""
+
+import json
+import math
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+#: Exit status of every command.
+DONE, BAD_INPUT, STOPPED_EARLY = 0, 2, 3
+#: What a shell reports for a program ended by Ctrl-C; here: before there was any result.
+INTERRUPTED = 130
+
+Answer = Mapping[str, Any]
+
+
+def reply(answer: Answer, text: str, *, as_json: bool) -> None:
+    """Give the answer of a command.
+
+    Parameters
+    ----------
+    answer
+        The answer in plain JSON types; numbers that are not finite become null.
+    text
+        The same answer for people.
+    as_json
+        Which of the two to give: the first as exactly one JSON object.
+    """
+    if not as_json:
+        _write(sys.stdout, text)
+        return
+    _write(sys.stdout, json.dumps(finite(answer), indent=2, allow_nan=False, ensure_ascii=False))
+
+
+def notice(sentence: str) -> None:
+    """Tell something that is not the answer, on standard error."""
+    _write(sys.stderr, f"undula: {sentence}")
+
+
+def refuse(sentence: str, *, as_json: bool) -> int:
+    """Tell what is wrong with the input, in one sentence.
+
+    Parameters
+    ----------
+    sentence
+        What is wrong and what would be right.
+    as_json
+        Whether to answer with a JSON object on standard output as well.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
+    sentence = " ".join(sentence.split())
+    if as_json:
+        reply({"status": "bad input", "error": sentence}, "", as_json=True)
+    notice(sentence)
+    return BAD_INPUT
+
+
+def finite(value: Any) -> Any:
+    """Return a JSON value with null in place of every number that JSON cannot hold."""
+    if isinstance(value, Mapping):
+        return {str(key): finite(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(part) for part in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _write(stream: Any, text: str) -> None:
+    from rich.console import Console
+
+    # No wrapping and no mark-up: names of files have to come out as they are.
+    console = Console(file=stream, highlight=False, markup=False, emoji=False)
+    console.print(text, soft_wrap=True)

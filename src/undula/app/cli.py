@@ -1,0 +1,211 @@
+"""The command `undula`. Nothing heavy is imported before a command needs it."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from undula.errors import InputError
+
+app = typer.Typer(
+    name="undula",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Result = Annotated[Path, typer.Argument(metavar="RESULT.nc", help="A file that undula run wrote.")]
+Json = Annotated[bool, typer.Option("--json", help="Answer with exactly one JSON object.")]
+NoMovie = Annotated[bool, typer.Option("--no-movie", help="Make no movie.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what exists.")]
+Budget = Annotated[
+    float | None,
+    typer.Option(metavar="SECONDS", help="Stop after so long, with what there is (exit status 3)."),
+]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments
+        What stands behind `undula`; by default what the shell gave.
+
+    Returns
+    -------
+    int
+        The exit status: 0 done, 2 bad input, 3 stopped early with results kept, 130 interrupted
+        before there was a result.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        return int(app(given or ["--help"], prog_name="undula", standalone_mode=False) or 0)
+    except KeyboardInterrupt:
+        return 130
+    except Exception as error:
+        # A wrong option, too, is bad input; its class has no public name in all versions of typer.
+        told = getattr(error, "format_message", None)
+        if told is None and not isinstance(error, InputError):
+            raise
+        from undula.app.answers import refuse
+
+        return refuse(told() if told else str(error), as_json="--json" in given)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"undula {version('undula')}")
+        raise typer.Exit
+
+
+@app.callback()
+def undula(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Tell the version.")
+    ] = False,
+) -> None:
+    """Elastic microfilaments in viscous fluid under follower forces: run, judge and draw them."""
+
+
+@app.command()
+def run(
+    file: Annotated[
+        Path | None, typer.Argument(metavar="[FILE.toml]", help="Input; without it, the defaults.")
+    ] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a key, as in load.force=80."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder of the results.", show_default=False)
+    ] = None,
+    overwrite: Overwrite = False,
+    no_movie: NoMovie = False,
+    budget: Budget = None,
+    as_json: Json = False,
+) -> int:
+    """Integrate a filament in time, judge its motion, store and draw it.
+
+    Writes run.nc, run.png and run.mp4 into DIR, by default results/ and the name of FILE.
+    """
+    from undula.app.finishing import finish
+    from undula.app.jobs import begin
+    from undula.studies.spec import read_input
+    from undula.studies.whole_file import claim_output
+
+    wanted, seconds = read_input(file, changes or ()), _seconds(budget)
+    result = (out or Path("results") / (file.stem if file else "run")) / "run.nc"
+    claim_output(result, overwrite=overwrite)
+    job = begin(wanted, result)
+    return finish(job, budget=seconds, with_movie=not no_movie, as_json=as_json)
+
+
+@app.command()
+def resume(
+    result: Result,
+    until: Annotated[
+        float | None,
+        typer.Option(
+            metavar="T", help="Time at which to end [T]; not needed by a run stopped early."
+        ),
+    ] = None,
+    no_movie: NoMovie = False,
+    budget: Budget = None,
+    as_json: Json = False,
+) -> int:
+    """Go on where a run ended, in the same file; figure and movie are drawn anew."""
+    from undula.app.finishing import finish
+    from undula.app.jobs import take_up
+    from undula.studies.whole_file import claim_output
+
+    seconds = _seconds(budget)
+    job = take_up(result, until)
+    claim_output(result, overwrite=True)
+    return finish(job, budget=seconds, with_movie=not no_movie, as_json=as_json)
+
+
+@app.command()
+def plot(
+    result: Result,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Figure: .png, .pdf or .svg.", show_default=False),
+    ] = None,
+    overwrite: Overwrite = False,
+    as_json: Json = False,
+) -> int:
+    """Draw the figure of a stored run, by default beside it as .png."""
+    from undula.app.answers import DONE, reply
+    from undula.app.drawing import draw_figure, figure_path
+    from undula.studies.store import load_result
+
+    path = figure_path(result, out)
+    draw_figure(load_result(result), path, overwrite=overwrite or out is None)
+    reply({"status": "done", "figure": str(path)}, str(path), as_json=as_json)
+    return DONE
+
+
+@app.command()
+def movie(
+    result: Result,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Movie: .mp4.", show_default=False),
+    ] = None,
+    overwrite: Overwrite = False,
+    as_json: Json = False,
+) -> int:
+    """Make the movie of a stored run, by default beside it as .mp4."""
+    from undula.app.answers import DONE, reply
+    from undula.app.drawing import draw_movie, movie_path
+    from undula.studies.store import load_result
+
+    path = movie_path(result, out)
+    draw_movie(load_result(result), path, overwrite=overwrite or out is None)
+    reply({"status": "done", "movie": str(path)}, str(path), as_json=as_json)
+    return DONE
+
+
+@app.command()
+def units(
+    force: Annotated[float | None, typer.Option(help="A force in B/L^2, to pN.")] = None,
+    time: Annotated[float | None, typer.Option(help="A time in T, to s.")] = None,
+    frequency: Annotated[float | None, typer.Option(help="Cycles per T, to Hz.")] = None,
+    energy: Annotated[float | None, typer.Option(help="An energy in B/L, to pN um.")] = None,
+    force_pn: Annotated[float | None, typer.Option(help="A force in pN, to B/L^2.")] = None,
+    time_s: Annotated[float | None, typer.Option(help="A time in s, to T.")] = None,
+    frequency_hz: Annotated[float | None, typer.Option(help="Hz, to cycles per T.")] = None,
+    energy_pn_um: Annotated[float | None, typer.Option(help="An energy in pN um, to B/L.")] = None,
+    length: Annotated[float, typer.Option(help="Length L of the filament, um.")] = 20.0,
+    stiffness: Annotated[float, typer.Option(help="Bending stiffness B, pN um^2.")] = 800.0,
+    viscosity: Annotated[float, typer.Option(help="Viscosity of the fluid, mPa s.")] = 1.0,
+    slenderness: Annotated[float, typer.Option(help="Radius over length.")] = 0.01,
+    as_json: Json = False,
+) -> int:
+    """Convert dimensionless numbers to physical ones, and back."""
+    from undula.app.answers import DONE, reply
+    from undula.app.units import convert, given, scales_of, units_answer, units_text
+
+    scales = scales_of(length, stiffness, viscosity, slenderness)
+    converted = convert(
+        scales,
+        given(force=force, time=time, frequency=frequency, energy=energy),
+        given(force=force_pn, time=time_s, frequency=frequency_hz, energy=energy_pn_um),
+    )
+    reply(units_answer(scales, converted), units_text(scales, converted), as_json=as_json)
+    return DONE
+
+
+def _seconds(budget: float | None) -> float:
+    """Return the seconds that a run may take."""
+    if budget is None:
+        return float("inf")
+    # Written so that NaN, too, is refused.
+    if not budget > 0.0:
+        raise InputError(f"--budget {budget} is out of range; give a number of seconds above 0")
+    return budget

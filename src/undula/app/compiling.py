@@ -1,0 +1,36 @@
+"""A word to the user while kernels are compiled, and none when they come from the cache."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from numba.core import event
+
+_COMPILE = "numba:compile"
+_TEXT = "compiling the kernels, once per installation; this takes about half a minute"
+
+
+class _FirstCompilation(event.Listener):
+    """Says its sentence at the first compilation; loading from the cache is none."""
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
+        self._said = False
+
+    def on_start(self, event: event.Event) -> None:  # noqa: ARG002
+        if not self._said:
+            self._said = True
+            self._say(_TEXT)
+
+    def on_end(self, event: event.Event) -> None:
+        """Ignore the end: progress of the run follows at once."""
+
+
+@contextmanager
+def compilation_announced(say: Callable[[str], None]) -> Iterator[None]:
+    """Call `say` with one sentence as soon as something has to be compiled in the block."""
+    listener = _FirstCompilation(say)
+    event.register(_COMPILE, listener)
+    try:
+        yield
+    finally:
+        event.unregister(_COMPILE, listener)

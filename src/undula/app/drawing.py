@@ -1,0 +1,81 @@
+"""Figures and movies of stored runs, on disk."""
+
+from io import BytesIO
+from pathlib import Path
+
+import xarray as xr
+
+from undula.app.meter import meter
+from undula.errors import InputError
+from undula.studies.whole_file import claim_output, write_whole
+from undula.views import movie, portrait
+
+FORMATS = (".png", ".pdf", ".svg")
+_DOTS_PER_INCH = 150
+
+
+def figure_path(result: Path, out: Path | None) -> Path:
+    """Return where the figure of a result goes.
+
+    Raises
+    ------
+    InputError
+        The ending of `out` is none that a figure can have.
+    """
+    path = out or result.with_suffix(FORMATS[0])
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(
+            f"--out {path} does not end like a figure; give a name that ends in .png, .pdf or .svg"
+        )
+    return path
+
+
+def movie_path(result: Path, out: Path | None) -> Path:
+    """Return where the movie of a result goes.
+
+    Raises
+    ------
+    InputError
+        `out` does not end in .mp4.
+    """
+    path = out or result.with_suffix(".mp4")
+    if path.suffix.lower() != ".mp4":
+        raise InputError(f"--out {path} does not end like a movie; give a name that ends in .mp4")
+    return path
+
+
+def draw_figure(stored: xr.Dataset, path: Path, *, overwrite: bool) -> None:
+    """Draw the portrait of a stored run into a file.
+
+    Raises
+    ------
+    InputError
+        The run has too few samples, or the file cannot be written.
+    """
+    claim_output(path, overwrite=overwrite)
+    image = BytesIO()
+    portrait(stored).savefig(image, format=path.suffix[1:].lower(), dpi=_DOTS_PER_INCH)
+    write_whole(path, image.getvalue(), overwrite=overwrite)
+
+
+def draw_movie(stored: xr.Dataset, path: Path, *, overwrite: bool) -> None:
+    """Make the movie of a stored run.
+
+    Raises
+    ------
+    InputError
+        The run has too few samples, the file cannot be written, or the encoder fails.
+    """
+    claim_output(path, overwrite=overwrite)
+    try:
+        with meter("drawing the movie") as show:
+            movie(
+                stored,
+                path,
+                progress=lambda done, total: show(done / total, f"image {done} of {total}"),
+            )
+    except OSError as error:
+        raise InputError(
+            f"cannot make the movie {path} ({error}); look at the space on the disk, or do"
+            " without it (--no-movie)"
+        ) from error

@@ -1,0 +1,98 @@
+"""The last part of a run: its figure and movie, its answer and its exit status."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from undula.analysis.schedule import Ending
+from undula.app.answers import DONE, STOPPED_EARLY, notice, reply
+from undula.app.drawing import draw_figure, draw_movie, figure_path, movie_path
+from undula.app.jobs import Job
+from undula.app.run_text import run_text
+from undula.app.running import compute
+from undula.errors import InputError
+from undula.studies.store import load_result
+
+_ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.LIMIT)
+
+
+def finish(job: Job, *, budget: float, with_movie: bool, as_json: bool) -> int:
+    """Carry a run to its end, draw it, and answer.
+
+    Parameters
+    ----------
+    job
+        The run.
+    budget
+        Seconds after which it is ended with what it has.
+    with_movie
+        Whether to make a movie of a run that has come to its end.
+    as_json
+        Whether to answer in JSON.
+
+    Returns
+    -------
+    int
+        The exit status: 0 if all was done, 3 if not, the result being kept.
+    """
+    seconds = compute(job, budget)
+    if job.replaces:
+        _remove_older_views(job.result)
+    stopped = job.simulation.ending in (Ending.INTERRUPTED, Ending.OUT_OF_TIME)
+    stored = load_result(job.result)
+    views, complete = _draw(stored, job.result, with_movie=with_movie and not stopped)
+    answer = json.loads(stored.attrs["summary"]) | _seed(job)
+    answer |= {"seconds": seconds, "output": str(job.result)} | views
+    _tell_of_trouble(job)
+    reply(answer, run_text(answer), as_json=as_json)
+    return DONE if complete and job.simulation.ending in _ENDED_WELL else STOPPED_EARLY
+
+
+def _seed(job: Job) -> dict[str, Any]:
+    start = job.wanted.dump()["start"]
+    return {"seed": start["seed"]} if "seed" in start else {}
+
+
+def _remove_older_views(result: Path) -> None:
+    """Remove figure and movie of the result that this one has replaced: they would mislead."""
+    for path in (figure_path(result, None), movie_path(result, None)):
+        path.unlink(missing_ok=True)
+
+
+def _draw(
+    stored: xr.Dataset, result: Path, *, with_movie: bool
+) -> tuple[dict[str, str | None], bool]:
+    """Draw what can be drawn; return the names by kind, and whether nothing failed."""
+    made: dict[str, str | None] = {"figure": None, "movie": None}
+    jobs = [("figure", draw_figure, figure_path(result, None))]
+    if with_movie:
+        jobs.append(("movie", draw_movie, movie_path(result, None)))
+    try:
+        for kind, draw, path in jobs:
+            draw(stored, path, overwrite=True)
+            made[kind] = str(path)
+    except InputError as error:
+        notice(f"{error}; the result is stored in {result}")
+        return made, False
+    except KeyboardInterrupt:
+        notice(f"stopped; the result is stored in {result}, undula plot and movie draw it")
+        return made, False
+    return made, True
+
+
+def _tell_of_trouble(job: Job) -> None:
+    """Say why a run has ended early, and what to do."""
+    ending, time = job.simulation.ending, job.simulation.time
+    if ending is Ending.FAILED:
+        notice(
+            f"the run failed at t = {time:.6g}: {job.simulation.cause}; everything up to there is"
+            f" in {job.result}"
+        )
+    elif ending not in _ENDED_WELL:
+        why = "interrupted" if ending is Ending.INTERRUPTED else "out of its budget of time"
+        notice(
+            f"the run was {why} at t = {time:.6g}; everything so far is in {job.result}, go on"
+            f" with: undula resume {job.result}"
+        )

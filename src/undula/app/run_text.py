@@ -1,0 +1,81 @@
+"""The answer of a run for people: a few aligned lines."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from undula.app.pace import duration
+
+Answer = Mapping[str, Any]
+
+
+def run_text(answer: Answer) -> str:
+    """Return verdict, figures, health and file names of a run, one a line.
+
+    Parameters
+    ----------
+    answer
+        The answer as `undula run --json` gives it.
+    """
+    lines = [(name, said) for name, said in _lines(answer) if said]
+    width = max(len(name) for name, _ in lines)
+    head = f"{answer['load']}: {answer['verdict']}"
+    return "\n".join([head, *(f"  {name:<{width}}  {said}" for name, said in lines)])
+
+
+def _lines(answer: Answer) -> Iterator[tuple[str, str]]:
+    yield "because", answer["reason"]
+    yield "ended", _ended(answer)
+    yield "frequency", _frequency(answer, "frequency")
+    yield "rotation", _frequency(answer, "rotation_frequency")
+    yield "shape", _frequency(answer, "shape_frequency")
+    yield "bending energy", _span(answer["bending_energy"], "B/L")
+    yield "tip radius", _span(answer["tip_radius"], "L")
+    yield "tip height", _span(answer["tip_height"], "L")
+    yield "health", _health(answer)
+    yield "result", answer["output"]
+    yield "figure", answer["figure"] or "none"
+    yield "movie", answer["movie"] or "none"
+
+
+def _ended(answer: Answer) -> str:
+    settled, start = answer["settled"], answer["window"][0]
+    since = f", settled since t = {settled['since']:.4g} T" if settled else ""
+    return (
+        f"{answer['status']} at t = {answer['time']:.4g} T{since}, after"
+        f" {duration(answer['seconds'])}; figures from t = {start:.4g} T on"
+    )
+
+
+def _frequency(answer: Answer, name: str) -> str:
+    value, error = answer[name], answer[f"{name}_error"]
+    if value is None:
+        return ""
+    return f"{with_error(value, error)} cycles per T"
+
+
+def with_error(value: float, error: float | None) -> str:
+    """Return a number to the digits that its error leaves, and the error with one digit."""
+    if error is None or not math.isfinite(error) or error <= 0.0:
+        return f"{value:.6g}"
+    # Twelve decimals are more than any run is good for.
+    decimals = min(12, max(0, -math.floor(math.log10(error))))
+    spread = f"{error:.1g}" if error < 1.0 else f"{error:.0f}"
+    # A value within its error is told as the nought that it may be.
+    return f"{value:.{decimals}f} ± {spread}" if abs(value) > error else f"0 ± {spread}"
+
+
+def _span(values: Mapping[str, float], unit: str) -> str:
+    low, high = values["min"], values["max"]
+    # A spread below the digits shown is no range for the reader.
+    if f"{low:.5g}" == f"{high:.5g}":
+        return f"{values['mean']:.5g} {unit}"
+    return f"{low:.5g} to {high:.5g} {unit}, mean {values['mean']:.5g}"
+
+
+def _health(answer: Answer) -> str:
+    return (
+        f"power balance to {answer['power_balance_error']:.1g}, length to"
+        f" {answer['length_error']:.1g}, {answer['steps']} steps ({answer['rejected']} rejected),"
+        f" {answer['frame']} frame"
+    )

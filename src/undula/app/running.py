@@ -1,0 +1,81 @@
+"""A run from its first step to its stored result, kept safe on the way."""
+
+import time
+from dataclasses import dataclass, field
+
+from undula.analysis.integrate import Progress, carry_on
+from undula.analysis.record import dataset_of
+from undula.analysis.run import Run
+from undula.app.answers import notice
+from undula.app.compiling import compilation_announced
+from undula.app.jobs import Job
+from undula.app.meter import Meter, meter
+from undula.app.pace import pace, part_done
+from undula.errors import InputError
+from undula.studies.store import write_run
+
+#: Seconds between two times that the result so far is written.
+SAVE_EVERY = 20.0
+#: Writing takes at most this part of the time: a long run has a large file.
+SAVING_SHARE = 0.1
+
+
+def compute(job: Job, budget: float) -> float:
+    """Carry a run on to its end, or until Ctrl-C or the budget stops it, and store its result.
+
+    Parameters
+    ----------
+    job
+        The run; its file is replaced, every now and then and at the end.
+    budget
+        Seconds after which the run is ended with what it has.
+
+    Returns
+    -------
+    float
+        Seconds that it took.
+
+    Raises
+    ------
+    InputError
+        The result cannot be written.
+    """
+    begun = time.monotonic()
+    with meter("running") as show, compilation_announced(notice):
+        carry_on(job.simulation, budget=budget, progress=_Watcher(job, show))
+    store(job)
+    return time.monotonic() - begun
+
+
+def store(job: Job) -> None:
+    """Write the result that a run has come to so far, whole."""
+    run = Run.of(job.simulation)
+    dataset = dataset_of(run, inputs=job.wanted.dump(), load=job.wanted.load_text)
+    write_run(job.result, dataset, run.checkpoint, overwrite=True)
+
+
+@dataclass
+class _Watcher:
+    """Shows where a run is, and stores what it has come to every now and then."""
+
+    job: Job
+    show: Meter
+    first: Progress | None = None
+    next_save: float = field(default_factory=lambda: SAVE_EVERY)
+
+    def __call__(self, progress: Progress) -> None:
+        self.first = self.first or progress
+        settling = self.job.wanted.time.until == "settled"
+        self.show(part_done(progress), pace(progress, self.first, settling=settling))
+        if progress.seconds >= self.next_save:
+            spent = self._save()
+            self.next_save = progress.seconds + spent + max(SAVE_EVERY, spent / SAVING_SHARE)
+
+    def _save(self) -> float:
+        """Store the result so far; return the seconds it took. The run outlives a full disk."""
+        begun = time.monotonic()
+        try:
+            store(self.job)
+        except InputError as error:
+            notice(f"the result so far is not stored: {error}")
+        return time.monotonic() - begun

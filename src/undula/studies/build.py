@@ -1,0 +1,89 @@
+"""From a checked input to what runs: the model, its start and its schedule."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from undula.analysis.schedule import Schedule
+from undula.arrays import State
+from undula.models.filament import Filament
+from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.starts import from_state, helix, kicked, mode, planar, straight
+from undula.studies.spec import RunInput
+from undula.studies.store import load_result
+from undula.studies.tables import LoadTable, StartTable
+
+_LOADS: Mapping[str, Callable[[LoadTable], Load]] = {
+    "tip": lambda table: TipLoad(table.force),
+    "point": lambda table: PointLoad(table.force, table.position),
+    "linear": lambda table: LinearLoad(table.force, table.slope),
+    "power": lambda table: PowerLoad(table.force, table.exponent),
+}
+
+_STARTS: Mapping[str, Callable[[Filament, StartTable], State]] = {
+    "straight": lambda model, _: straight(model),
+    "kicked": lambda model, table: kicked(model, table.amplitude, seed=table.seed),
+    "planar": lambda model, table: planar(model, table.amplitude, angle=table.angle),
+    "helix": lambda model, table: helix(
+        model, table.amplitude, right_handed=table.handedness == "right"
+    ),
+    "mode": lambda model, table: mode(model, table.amplitude, angle=table.angle),
+    "state": lambda model, table: _stored_state(model, Path(table.file or "")),
+}
+
+
+def build_model(wanted: RunInput) -> Filament:
+    """Return the model that an input describes.
+
+    Parameters
+    ----------
+    wanted
+        A checked input; its tables ``[model]`` and ``[load]`` are read.
+    """
+    table = wanted.model
+    return Filament(
+        segments=table.segments,
+        load=_LOADS[wanted.load.profile](wanted.load),
+        drag_ratio=table.drag_ratio,
+        inextensibility=table.inextensibility,
+        tensile_stiffness=table.tensile_stiffness,
+        confined=table.confined,
+    )
+
+
+def build_start(wanted: RunInput, model: Filament) -> State:
+    """Return the state in which the run of an input begins.
+
+    Parameters
+    ----------
+    wanted
+        A checked input; its table ``[start]`` is read.
+    model
+        The model that runs.
+
+    Returns
+    -------
+    ndarray of shape (model.size,)
+        The state at time 0.
+
+    Raises
+    ------
+    InputError
+        The result file of ``start.file`` cannot be read, or its last shape does not lie in the
+        plane of a confined model.
+    """
+    return _STARTS[wanted.start.shape](model, wanted.start)
+
+
+def build_schedule(wanted: RunInput) -> Schedule:
+    """Return how long the run of an input goes on, what it samples, and how exact it is.
+
+    Parameters
+    ----------
+    wanted
+        A checked input; its table ``[time]`` is read.
+    """
+    return Schedule(**wanted.time.model_dump())
+
+
+def _stored_state(model: Filament, path: Path) -> State:
+    return from_state(model, load_result(path)["nodes"].values[-1])

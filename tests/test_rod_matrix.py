@@ -1,0 +1,154 @@
+"""Claims on the matrices of an implicit step: exact where they say so, near enough where not."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import null_space
+
+import naive
+from cases import (
+    RIGID_FORMS,
+    Form,
+    every_drag_ratio,
+    every_form,
+    every_load,
+    filament,
+    random_state,
+)
+from undula.arrays import Array, State
+from undula.compiled import kernel
+from undula.models import starts
+from undula.models.filament import Filament
+from undula.models.loads import Load
+from undula.models.rod_matrix import exact_derivative
+from undula.numerics.banded import to_dense
+from undula.numerics.system import generator, matrix, residual
+
+every_rigid_form = pytest.mark.parametrize("form", RIGID_FORMS, ids=str)
+
+
+@kernel
+def write_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
+    residual(system, y, w, c, out)
+
+
+@kernel
+def write_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
+    matrix(system, y, w, c, turn, band)
+
+
+@kernel
+def write_generator(system: Any, y: Any, out: Any) -> None:
+    generator(system, y, out)
+
+
+def derivative(model: Filament, y: Array, w: Array, c: float, turn: float = 0.0) -> Array:
+    """Return the exact derivative of the residual as a dense matrix."""
+    band = np.zeros((y.size, 6 * (model.dimension + 1) - 1))
+    exact_derivative(model.system, y, w, c, turn, band)
+    return to_dense(band)
+
+
+def newton(model: Filament, y: Array, w: Array, c: float, turn: float = 0.0) -> Array:
+    """Return the matrix of Newton's method as a dense matrix."""
+    band = np.zeros((y.size, 2 * model.system.half_bandwidth + 1))
+    write_matrix(model.system, y, w, c, turn, band)
+    return to_dense(band)
+
+
+def differenced(model: Filament, y: Array, w: Array, c: float, turn: float) -> Array:
+    """Return the derivative of the residual along dw = dy (1 + turn S) by differences."""
+
+    def along(change: Array) -> Array:
+        turned, out = np.zeros(y.size), np.empty(y.size)
+        write_generator(model.system, change, turned)
+        write_residual(model.system, y + change, w + change + turn * turned, c, out)
+        return out
+
+    return naive.differences(along, np.zeros(y.size), 3e-5)
+
+
+@every_load
+@every_form
+@every_drag_ratio
+def test_the_exact_derivative_is_that_of_the_residual(
+    load: Load, form: Form, drag_ratio: float
+) -> None:
+    model = filament(form, load, segments=6, drag_ratio=drag_ratio)
+    y = model.unknowns(random_state(model, bend=1.5))
+    w = np.random.default_rng(5).normal(size=y.size) * model.position_mask
+    c, turn = 1e-3, 0.7
+    numerical = differenced(model, y, w, c, turn)
+    scale = np.abs(numerical).max(axis=1, keepdims=True)
+    # Fourth power of a step of 2e-4 of a link, and round-off over it; row by row, as rows of
+    # constraints are smaller than those of forces.
+    assert (np.abs(derivative(model, y, w, c, turn) - numerical) <= 1e-8 * scale).all()
+
+
+def bent(model: Filament, amplitude: float) -> tuple[Array, Array, float]:
+    """Return the unknowns of a bent state and the step of an implicit method there."""
+    return step_at(model, starts.kicked(model, amplitude))
+
+
+def step_at(model: Filament, x: State) -> tuple[Array, Array, float]:
+    y, c = model.unknowns(x), 1e-6
+    velocity = np.zeros((model.segments, model.dimension + 1))
+    velocity[:, :-1] = model.rhs(x).reshape(model.segments, -1)
+    return y, c * velocity.ravel(), c
+
+
+@every_rigid_form
+@every_load
+def test_newtons_matrix_is_exact_at_the_straight_state(form: Form, load: Load) -> None:
+    model = filament(form, load)
+    step = step_at(model, model.straight())
+    exact = derivative(model, *step, turn=0.3)
+    # Round-off of entries up to 1 / link.
+    assert np.abs(newton(model, *step, turn=0.3) - exact).max() < 1e-14 * np.abs(exact).max()
+
+
+@every_rigid_form
+def test_newtons_matrix_errs_by_the_square_of_the_angles_where_lengths_are_kept(form: Form) -> None:
+    model = filament(form)
+    angles = [0.2, 0.1, 0.05, 0.025]
+    errors = [error_within_lengths(model, angle) for angle in angles]
+    order = np.polyfit(np.log(angles), np.log(errors), 1)[0]
+    # The next term is of the fourth power: 4 per cent at the largest angle.
+    assert 1.85 < order < 2.15
+
+
+@every_rigid_form
+def test_newtons_matrix_errs_by_the_angles_themselves_across_lengths(form: Form) -> None:
+    model = filament(form)
+    angles = [0.2, 0.1, 0.05, 0.025]
+    errors = []
+    for angle in angles:
+        step = bent(model, angle)
+        errors.append(np.abs(newton(model, *step) - derivative(model, *step)).max())
+    # As above.
+    assert 0.85 < np.polyfit(np.log(angles), np.log(errors), 1)[0] < 1.15
+
+
+def error_within_lengths(model: Filament, amplitude: float) -> float:
+    """Return the largest error of Newton's matrix on moves that leave the links' lengths alone."""
+    y, w, c = bent(model, amplitude)
+    moves = null_space(naive.stretching(model, model.positions(y)))
+    error = newton(model, y, w, c) - derivative(model, y, w, c)
+    return float(np.abs(error[:, model.position_mask == 1.0] @ moves).max())
+
+
+@pytest.mark.parametrize("confined", [False, True])
+def test_newtons_matrix_of_extensible_links_is_the_exact_derivative(confined: bool) -> None:
+    model = filament(Form("weak", confined))
+    step = step_at(model, random_state(model))
+    exact = derivative(model, *step)
+    # One source compiled twice, free to order its sums.
+    assert np.abs(newton(model, *step) - exact).max() < 1e-14 * np.abs(exact).max()
+
+
+@every_rigid_form
+def test_newtons_matrix_is_narrower_than_the_exact_derivative(form: Form) -> None:
+    model = filament(form)
+    numbers = model.dimension + 1
+    assert model.system.half_bandwidth == 2 * numbers < 3 * numbers - 1
