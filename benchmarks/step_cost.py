@@ -120,7 +120,9 @@ def growth() -> None:
         cost = window(model, un.planar(model, 0.5), 0.002, 1e-6, frame=False)
         per_step.append(1e6 * cost.seconds / cost.steps)
     slope = np.polyfit(np.log(sizes), np.log(per_step), 1)[0]
-    print("\nus/step at " + ", ".join(f"{n}: {t:.1f}" for n, t in zip(sizes, per_step, strict=True)))
+    print(
+        "\nus/step at " + ", ".join(f"{n}: {t:.1f}" for n, t in zip(sizes, per_step, strict=True))
+    )
     print(f"cost of a step grows as segments^{slope:.2f}")
 
 
@@ -135,7 +137,9 @@ def main() -> None:
     """Measure and print everything."""
     small = un.Filament(20, un.TipLoad(75.0))
     first = un.kicked(small)
-    timed("first run of the process, kernels compiled or loaded", lambda: un.integrate(small, first))
+    timed(
+        "first run of the process, kernels compiled or loaded", lambda: un.integrate(small, first)
+    )
     compare(
         75.0,
         1.0,

@@ -58,9 +58,7 @@ loads = st.one_of(
     st.builds(un.LinearLoad, forces, st.floats(-1.0, 1.0)),
     st.builds(un.PowerLoad, forces, st.floats(0.0, 20.0)),
 )
-starts = st.tuples(
-    st.sampled_from([un.kicked, un.planar, un.helix, un.mode]), st.floats(1e-3, 1.5)
-)
+starts = st.tuples(st.sampled_from([un.kicked, un.planar, un.helix, un.mode]), st.floats(1e-3, 1.5))
 
 
 def short_run(load: un.Load, start, ratio: float, form: str, rtol: float = 1e-6) -> Run:

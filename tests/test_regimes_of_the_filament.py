@@ -24,7 +24,9 @@ def test_a_weak_force_lets_the_filament_return_to_straight_monotonically() -> No
 
 
 @pytest.mark.parametrize(("force", "until"), [(25.0, 0.12), (30.0, 0.15), (35.0, 0.5)])
-def test_below_threshold_it_rings_down_as_the_linear_theory_says(force: float, until: float) -> None:
+def test_below_threshold_it_rings_down_as_the_linear_theory_says(
+    force: float, until: float
+) -> None:
     filament = un.Filament(SEGMENTS, un.TipLoad(force))
     run = un.integrate(filament, un.kicked(filament, 1e-3), until=until)
     assert run.verdict.name == "straight"

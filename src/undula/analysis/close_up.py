@@ -41,5 +41,5 @@ def _periods(watch: Watch, duration: float) -> tuple[float | None, float]:
     if len(returns) > 2:
         beat = 2.0 * (returns[-1] - returns[0]) / (len(returns) - 1)  # two maxima of energy a beat
         candidates.append(beat)
-    candidates = [period for period in candidates if period <= duration]
-    return (min(candidates), max(candidates)) if candidates else (None, duration)
+    periods = [period for period in candidates if period and period <= duration]
+    return (min(periods), max(periods)) if periods else (None, duration)

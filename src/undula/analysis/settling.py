@@ -16,13 +16,16 @@ more slowly than that cannot be told from a settled one by any run; its spectrum
 
 import math
 from collections import deque
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import astuple, dataclass, field
 from itertools import pairwise
 from typing import Literal
 
+import numpy as np
+
 from undula.analysis.alignment import aligned_distance
-from undula.arrays import Nodes
+from undula.analysis.observables import displacement
+from undula.arrays import Array, Nodes
 
 #: Tolerance of the repetition, relative to the displacement, in units of rtol. A hundred local
 #: errors are about what a few periods accumulate.
@@ -56,28 +59,26 @@ class Settled:
         What it may still change by, relative to the displacement.
     period : float or None
         Time after which the shape repeats up to rotation and reflection [T]; None if it is steady.
-    turn : float
-        Time of one turn about the axis [T]; infinite without rotation.
+    turn : float or None
+        Time of one turn about the axis [T]; None without rotation.
     """
 
     kind: Literal["at rest", "steady", "periodic"]
     since: float
     remaining: float
     period: float | None
-    turn: float = math.inf
+    turn: float | None
 
     @property
     def shown_until(self) -> float:
         """Time until which it should be seen, to measure its frequencies [T]."""
-        if self.kind == "at rest":
-            return self.since
         cycle = 2.0 * self.period if self.period else self.turn  # two mirror images a beat
-        return self.since + SHOWN_CYCLES * cycle if math.isfinite(cycle) else self.since
+        return self.since + SHOWN_CYCLES * (cycle or 0.0)
 
 
 @dataclass(frozen=True)
 class Pace:
-    """How the system moved at an instant: RMS speeds and displacement, rate of turning."""
+    """How the system moved at an instant, measured as the integrator measures: see `size`."""
 
     time: float
     speed: float
@@ -86,9 +87,9 @@ class Pace:
     turn_rate: float
 
     @property
-    def turn(self) -> float:
-        """Time of one turn [T]; infinite without rotation."""
-        return 2.0 * math.pi / abs(self.turn_rate) if self.turn_rate else math.inf
+    def turn(self) -> float | None:
+        """Time of one turn [T]; None without rotation."""
+        return 2.0 * math.pi / abs(self.turn_rate) if self.turn_rate else None
 
 
 @dataclass
@@ -100,7 +101,7 @@ class Watch:
     rtol : float
         Relative tolerance of the integration, which sets those of the verdict.
     start : float
-        RMS displacement at the start [L].
+        Displacement at the start, as the integrator measures it.
     """
 
     rtol: float
@@ -115,6 +116,20 @@ class Watch:
         self.paces.append(pace)
         self.returns.extend(returns)
 
+    def to_arrays(self) -> dict[str, Array]:
+        """Return all that was taken down, as arrays."""
+        return {
+            "paces": np.array([astuple(pace) for pace in self.paces]).reshape(-1, 5),
+            "return_times": np.array([time for time, _ in self.returns]),
+            "return_nodes": np.array([nodes for _, nodes in self.returns]),
+        }
+
+    def note_arrays(self, saved: Mapping[str, Array]) -> None:
+        """Take down what `to_arrays` gave."""
+        self.paces.extend(Pace(*map(float, row)) for row in saved["paces"])
+        times = map(float, saved["return_times"])
+        self.returns.extend(zip(times, saved["return_nodes"], strict=True))
+
     def settled(self) -> Settled | None:
         """Return how the motion has settled, None if it has not."""
         return self._at_rest() or self._steady() or self._periodic()
@@ -124,10 +139,12 @@ class Watch:
         part = last / start if start > 0.0 else 0.0
         if part > TOLERANCE_IN_RTOL * self.rtol:
             return None
-        return Settled("at rest", self.paces[-1].time, part, None)
+        return Settled("at rest", self.paces[-1].time, part, None, None)
 
     def _steady(self) -> Settled | None:
         last = self.paces[-1]
+        if last.turn is None:
+            return None
         late = [pace for pace in self.paces if pace.time >= last.time - REPETITIONS * last.turn]
         if len(late) < REPETITIONS or late[0] is self.paces[0]:
             return None
@@ -143,7 +160,7 @@ class Watch:
             if len(returns) < REPETITIONS + 1:
                 return None
             changes = [
-                float(aligned_distance(earlier, later).distance) / self.paces[-1].displacement
+                float(aligned_distance(earlier, later).distance / displacement(later))
                 for (_, earlier), (_, later) in pairwise(returns)
             ]
             remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol)

@@ -63,9 +63,8 @@ class Simulation:
         """Make what follows from the rest."""
         self._options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
-        bend = self.model.positions(first[:-RATES]) - self.model.straight()
-        displacement = float(np.sqrt(np.mean(bend**2)))
-        self.watch = Watch(self.schedule.rtol, displacement)
+        departure = self.model.departure(self.model.positions(first[:-RATES]))
+        self.watch = Watch(self.schedule.rtol, departure)
         self.marks.append(_copied(self.memory))
 
     @classmethod
@@ -201,6 +200,7 @@ class Simulation:
     def checkpoint(self) -> dict[str, Array]:
         """Return all that `resume` needs, as arrays."""
         saved: dict[str, Any] = {"states": self.states, "interval": np.float64(self.interval)}
+        saved |= {f"watch_{name}": array for name, array in self.watch.to_arrays().items()}
         for prefix, memory in (("memory", self.memory), ("mark", self.marks[0])):
             for name, array in memory._asdict().items():
                 saved[f"{prefix}_{name}"] = array
@@ -217,6 +217,8 @@ class Simulation:
             model, schedule, memory, float(saved["interval"]), [np.array(saved["states"])]
         )
         simulation.marks.appendleft(mark)
+        watched = ("paces", "return_times", "return_nodes")
+        simulation.watch.note_arrays({name: saved[f"watch_{name}"] for name in watched})
         return simulation
 
 

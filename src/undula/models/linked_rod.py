@@ -133,6 +133,11 @@ class LinkedRod(ABC):
                 change[i, m * (i - 1) : m * (i - 1) + d] = -stretching[i]
         return change
 
+    def departure(self, x: State) -> float:
+        """Return the root mean square difference of the tangents from straight [rad]."""
+        away = np.reshape(x - self.straight(), (self.links, self.dimension))
+        return float(np.linalg.norm(np.diff(away, axis=0, prepend=0.0)) * np.sqrt(self.links))
+
     def energy(self, x: State) -> float:
         """Return the elastic energy."""
         observed = self.observe(np.atleast_2d(self.unknowns(x)))

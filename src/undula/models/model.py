@@ -62,6 +62,9 @@ class Model(Protocol):
     def jacobian(self, x: State) -> Array:
         """Return d rhs / dx, shape (size, size), exact."""
 
+    def departure(self, x: State) -> float:
+        """Return how far x is from straight, in the norm in which the integrator measures."""
+
     def energy(self, x: State) -> float:
         """Return the elastic energy."""
 
