@@ -44,8 +44,8 @@ def test_the_global_error_follows_the_relative_tolerance(force: float, start: st
     rtols = 10.0 ** -np.arange(4.0, 9.5, 0.5)
     errors = final_error(force, start, 0.02, rtols)
     slope = np.polyfit(np.log(rtols), np.log(errors), 1)[0]
-    # Local errors are kept proportional to rtol; a variable order makes the global one follow with a
-    # slope somewhat below 1, as steps grow fewer than they would at one order.
+    # Local errors are kept proportional to rtol; a variable order makes the global one follow with
+    # a slope somewhat below 1, as steps grow fewer than they would at one order.
     assert 0.75 < slope < 1.15
     # Five and a half decades of rtol: no error is far above its tolerance times the steps taken.
     assert np.all(np.array(errors) < 300.0 * rtols)
