@@ -37,8 +37,7 @@ def tangents_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
                 t[i, a] = (y[m * i + a] - y[m * (i - 1) + a]) * inverse
         for i in range(t.shape[0]):
             length[i] = system.link
-        if extensible:
-            for i in range(t.shape[0]):
+            if extensible:
                 square = 0.0
                 for a in range(d):
                     square += t[i, a] * t[i, a]
@@ -68,6 +67,49 @@ def cosine_kernel(dimension: int) -> Callable[..., Any]:
 
 
 @cache
+def moments_kernel(dimension: int) -> Callable[..., Any]:
+    """Return `moments(system, t, moment, shortfall)`: a (N + 1, d) and K g (1 - c) (N + 1,)."""
+    d = dimension
+    cosine = cosine_kernel(d)
+
+    @kernel
+    def moments(system: Any, t: Any, moment: Any, shortfall: Any) -> None:
+        n = t.shape[0]
+        for i in range(n):
+            c = cosine(t, i)
+            bend = system.joint[i] * stiffening(c)
+            shortfall[i] = bend * (1.0 - c)
+            for a in range(d):
+                previous = t[i - 1, a] if i > 0 else (1.0 if a == d - 1 else 0.0)
+                moment[i, a] = bend * (t[i, a] - previous)
+        shortfall[n] = 0.0
+        for a in range(d):
+            moment[n, a] = 0.0
+
+    return moments
+
+
+@cache
+def along_kernel(dimension: int) -> Callable[..., Any]:
+    """Return `along(t, u, i)`: s . u / |s|^2 at node i, so that m m . u = s (s . u) / |s|^2.
+
+    s = t_i + t_{i+1} has the direction m of the drag, at the last node s = t_i.
+    """
+    d, m = dimension, dimension + 1
+
+    @kernel
+    def along(t: Any, u: Any, i: Any) -> Any:
+        product = square = 0.0
+        for a in range(d):
+            s = t[i, a] + (t[i + 1, a] if i + 1 < t.shape[0] else 0.0)
+            product += s * u[m * i + a]
+            square += s * s
+        return product / square
+
+    return along
+
+
+@cache
 def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
     """Return `mean_tangent(t, i, out)`: the drag's direction at node i, gives 1/|t_i + t_{i+1}|."""
     d = dimension
@@ -89,74 +131,49 @@ def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
 
 def _register(rod: Any) -> None:
     d, m, extensible = rod.dimension, rod.dimension + 1, rod.extensible
-    tangents, cosine = tangents_kernel(d, extensible), cosine_kernel(d)
-    mean_tangent = mean_tangent_kernel(d)
+    tangents, moments = tangents_kernel(d, extensible), moments_kernel(d)
+    along = along_kernel(d)
 
     @implements(residual, rod)
     def rod_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
         n = system.joint.shape[0]
         t, length = np.empty((n, d)), np.empty(n)
-        moment, next_moment = np.empty(d), np.empty(d)
-        mean, force = np.empty(d), np.zeros(d)
+        moment, shortfall = np.empty((n + 1, d)), np.empty(n + 1)
         tangents(system, y, t, length)
-        shortfall = 0.0
-        bend = system.joint[0] * stiffening(cosine(t, 0))
-        for a in range(d):
-            moment[a] = bend * t[0, a]
-        moment[d - 1] -= bend
+        moments(system, t, moment, shortfall)
         for i in range(n):
-            if extensible:
-                shortfall = bend * (1.0 - cosine(t, i))
-            bend = 0.0
+            multiplier, lagging = y[m * i + d], system.lag * along(t, w, i)
+            square = 0.0
             for a in range(d):
-                next_moment[a] = 0.0
-            if i + 1 < n:
-                bend = system.joint[i + 1] * stiffening(cosine(t, i + 1))
-                for a in range(d):
-                    next_moment[a] = bend * (t[i + 1, a] - t[i, a])
-            multiplier = y[m * i + d]
-            for a in range(d):
-                link_force = (next_moment[a] - moment[a]) / length[i] - multiplier * t[i, a]
+                force = (moment[i + 1, a] - moment[i, a]) / length[i] - multiplier * t[i, a]
                 if i > 0:
-                    out[m * (i - 1) + a] += c * (link_force + system.foot[i] * t[i, a])
-                force[a] = link_force - system.head[i] * t[i, a]
-                moment[a] = next_moment[a]
-            mean_tangent(t, i, mean)
-            along = 0.0
-            for a in range(d):
-                along += mean[a] * w[m * i + a]
-            for a in range(d):
-                drag = system.weight[i] * (w[m * i + a] - system.lag * along * mean[a])
-                out[m * i + a] = drag - c * force[a]
+                    out[m * (i - 1) + a] += c * (force + system.foot[i] * t[i, a])
+                direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
+                drag = system.weight[i] * (w[m * i + a] - lagging * direction)
+                out[m * i + a] = drag - c * (force - system.head[i] * t[i, a])
+                square += t[i, a] * t[i, a]
             if extensible:
-                if i + 1 < n:
-                    shortfall += bend * (1.0 - cosine(t, i + 1))
-                tension = multiplier + shortfall / length[i]
+                tension = multiplier + (shortfall[i] + shortfall[i + 1]) / length[i]
                 out[m * i + d] = length[i] / system.link - 1.0 - tension / system.tensile
             else:
-                square = 0.0
-                for a in range(d):
-                    square += t[i, a] * t[i, a]
                 out[m * i + d] = 0.5 * (square - 1.0)
 
     @implements(weigh, rod)
     def rod_weigh(system: Any, y: Any, u: Any, out: Any) -> None:
         n = system.joint.shape[0]
-        t, length, mean = np.empty((n, d)), np.empty(n), np.empty(d)
+        t, length = np.empty((n, d)), np.empty(n)
         tangents(system, y, t, length)
         for i in range(n):
-            mean_tangent(t, i, mean)
-            along = 0.0
+            lagging = system.lag * along(t, u, i)
             for a in range(d):
-                along += mean[a] * u[m * i + a]
-            for a in range(d):
-                out[m * i + a] = system.weight[i] * (u[m * i + a] - system.lag * along * mean[a])
+                direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
+                out[m * i + a] = system.weight[i] * (u[m * i + a] - lagging * direction)
             out[m * i + d] = 0.0
 
     @implements(rates, rod)
     def rod_rates(system: Any, y: Any, v: Any, out: Any) -> None:
         n = system.joint.shape[0]
-        t, length, mean = np.empty((n, d)), np.empty(n), np.empty(d)
+        t, length = np.empty((n, d)), np.empty(n)
         tangents(system, y, t, length)
         spin = inertia = power = dissipation = 0.0
         for i in range(n):
@@ -164,15 +181,14 @@ def _register(rod: Any) -> None:
             if d == 3:
                 spin += y[k] * v[k + 1] - y[k + 1] * v[k]
                 inertia += y[k] * y[k] + y[k + 1] * y[k + 1]
-            mean_tangent(t, i, mean)
-            along = square = 0.0
+            lagging = system.lag * along(t, v, i)
             for a in range(d):
-                along += mean[a] * v[k + a]
-                square += v[k + a] * v[k + a]
+                direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
+                drag = system.weight[i] * (v[k + a] - lagging * direction)
+                dissipation += v[k + a] * drag
                 power -= system.head[i] * t[i, a] * v[k + a]
                 if i > 0:
                     power -= system.foot[i] * t[i, a] * v[k - m + a]
-            dissipation += system.weight[i] * (square - system.lag * along * along)
         out[0] = spin / inertia if inertia > 0.0 else 0.0
         out[1] = power
         out[2] = dissipation
