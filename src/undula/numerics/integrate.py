@@ -53,6 +53,8 @@ _TOO_SHORT, _NOT_FINITE = Status.STEP_TOO_SHORT.value, Status.NOT_FINITE.value
 
 #: A step that does not converge with a fresh matrix is made shorter by this factor.
 FAILURE_FACTOR = 0.3
+#: A state farther than this from the reference counts as infinite: squares must not overflow.
+LARGEST_SIZE = 1e150
 #: The shortest step, as a fraction of the time reached (round-off) and in absolute terms.
 SHORTEST_RELATIVE, SHORTEST_ABSOLUTE = 1e-14, 1e-18
 
@@ -65,10 +67,11 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
     memory.count[ORDER] = memory.count[PLANNED_ORDER]
     change_step(memory, memory.real[PLANNED_FACTOR])
     while True:
-        if memory.real[STEP] < SHORTEST_ABSOLUTE + SHORTEST_RELATIVE * abs(memory.real[TIME]):
+        shortest = SHORTEST_ABSOLUTE + SHORTEST_RELATIVE * abs(memory.real[TIME])
+        if not memory.real[STEP] >= shortest:
             return _TOO_SHORT
         c, scale = predict(system, memory, options, work)
-        if not np.isfinite(scale):
+        if not scale <= options.atol + options.rtol * LARGEST_SIZE:
             return _NOT_FINITE
         if not correct(system, memory, options, work, c, scale):
             memory.count[FAILED] += 1
@@ -79,8 +82,10 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
         if error <= 1.0:
             break
         memory.count[REJECTED] += 1
-        factor = SAFETY * factor_for(error, memory.count[ORDER])
-        change_step(memory, max(SHORTEST_FACTOR, factor))
+        factor = SHORTEST_FACTOR
+        if np.isfinite(error):
+            factor = max(factor, SAFETY * factor_for(error, memory.count[ORDER]))
+        change_step(memory, factor)
     accept(memory, work)
     memory.real[TIME] += memory.real[STEP]
     memory.count[STEPS] += 1
