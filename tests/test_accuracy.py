@@ -100,3 +100,10 @@ def test_the_co_rotating_frame_changes_nothing_but_the_effort() -> None:
     assert np.abs(tip - expected).max() < 1e-5  # some local errors at rtol = 1e-6
     # In the lab a turn takes some fifty steps; here the last half of the run takes next to none.
     assert run.health.steps < 50.0 * rate * 0.5
+
+
+def test_a_straight_filament_without_a_kick_has_nothing_to_balance() -> None:
+    filament = un.Filament(20, un.TipLoad(75.0))
+    run = un.integrate(filament, un.straight(filament))
+    assert run.verdict.name == "straight"
+    assert run.health.power_balance_error == 0.0

@@ -9,6 +9,9 @@ from undula.analysis.simulation import Simulation
 from undula.arrays import Instants, Shapes
 from undula.numerics import memory as names
 
+#: Energy [B/L] that comes from round-off alone: a straight filament has no more.
+ROUND_OFF = 1e-24
+
 
 @dataclass(frozen=True)
 class Health:
@@ -72,7 +75,7 @@ def power_balance_error(motion: Motion) -> float:
     stored: Instants = energetics.bending_energy + energetics.stretching_energy
     imbalance = stored - stored[0] + motion.loss - motion.work
     throughput = float(motion.loss[-1] + abs(motion.work[-1]))
-    return float(np.abs(imbalance).max()) / throughput if throughput > 0.0 else 0.0
+    return float(np.abs(imbalance).max()) / throughput if throughput > ROUND_OFF else 0.0
 
 
 def length_error(nodes: Shapes) -> float:
