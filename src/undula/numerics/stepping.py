@@ -140,12 +140,13 @@ def predict(system: Any, memory: Any, options: Any, work: Any) -> Any:
     order, n = memory.count[ORDER], work.y.shape[0]
     differences = memory.differences
     inverse = 1.0 / options.alpha[order]
-    work.predicted[:] = differences[0]
-    work.psi[:] = 0.0
-    for j in range(1, order + 1):
+    for i in range(differences.shape[1]):
+        work.predicted[i], work.psi[i] = differences[0, i], 0.0
+    for j in range(1, order + 1):  # two loops, as one over both arrays is not vectorised
         factor = options.gamma[j] * inverse
         for i in range(differences.shape[1]):
             work.predicted[i] += differences[j, i]
+        for i in range(differences.shape[1]):
             work.psi[i] += factor * differences[j, i]
     work.y[:] = work.predicted[:n]
     for i in range(n):
@@ -288,9 +289,9 @@ def iterate(
 @kernel
 def integrate_rates(system: Any, work: Any, c: Any) -> None:
     """Advance the angle and the integrals of power by the formula that moved the positions."""
-    n = work.y.shape[0]
+    n, inverse = work.y.shape[0], 1.0 / c
     for i in range(n):
-        work.correction[i] = work.w[i] / c
+        work.correction[i] = work.w[i] * inverse
     rates(system, work.y, work.correction, work.change[n:])
     for i in range(n, n + RATES):
         work.change[i] = c * work.change[i] - work.psi[i]
