@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import undula.analysis.observables as observables
     import undula.views as views
     from undula.analysis.integrate import integrate
     from undula.analysis.record import dataset_of
@@ -40,6 +41,8 @@ _HOMES = {
     "straight": "undula.models.starts",
 }
 
+_ROOMS = {"observables": "undula.analysis.observables", "views": "undula.views"}
+
 __all__ = [
     "Filament",
     "InputError",
@@ -57,6 +60,7 @@ __all__ = [
     "kicked",
     "load_result",
     "mode",
+    "observables",
     "planar",
     "straight",
     "views",
@@ -64,8 +68,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name == "views":
-        return import_module("undula.views")
+    if name in _ROOMS:
+        return import_module(_ROOMS[name])
     if name not in _HOMES:
         raise AttributeError(f"module 'undula' has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)
