@@ -76,6 +76,20 @@ def test_energy_balances_and_lengths_are_kept(load, start, ratio: float, form: s
         assert health.length_error < 1e-5
 
 
+@pytest.mark.slow
+@settings(max_examples=2000, deadline=None)
+@given(loads, starts, st.floats(1.0, 5.0), st.sampled_from(["exact", "weak"]), st.integers(20, 60))
+def test_energy_balances_over_thousands_of_runs(
+    load, start, ratio: float, form: str, segments: int
+) -> None:
+    filament = un.Filament(segments, load, drag_ratio=ratio, inextensibility=form)
+    shape, amplitude = start
+    health = un.integrate(filament, shape(filament, amplitude), until=0.05, samples=50).health
+    assert health.power_balance_error < 1e-4
+    if form == "exact":
+        assert health.length_error < 1e-5
+
+
 @pytest.mark.parametrize(
     "load", [un.TipLoad(200.0), un.PointLoad(200.0, 0.6), un.LinearLoad(150.0, 0.5)]
 )

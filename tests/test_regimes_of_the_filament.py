@@ -73,6 +73,14 @@ def test_a_strong_force_makes_even_a_non_planar_kick_flap_in_a_plane() -> None:
     assert run.summary()["planarity"] < 0.02
 
 
+@pytest.mark.parametrize(("force", "verdict"), [(180.0, "spinning"), (190.0, "planar flapping")])
+def test_between_180_and_190_a_kick_ends_in_another_regime(force: float, verdict: str) -> None:
+    # Ling, Guo & Kanso (2018), section on spinning and flapping: 180 spins, 190 flaps.
+    filament = un.Filament(40, un.TipLoad(force))
+    run = un.integrate(filament, un.kicked(filament), until="settled")
+    assert run.verdict.name == verdict
+
+
 def test_the_weak_form_tends_to_the_exact_one_as_one_over_the_stiffness() -> None:
     exact = un.Filament(12, un.TipLoad(75.0))
     tight = {"until": "settled", "rtol": 1e-8}
