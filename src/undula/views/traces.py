@@ -12,6 +12,8 @@ from undula.views.quantities import Curve, Row
 from undula.views.resample import curve_times
 from undula.views.scene import PERIODS_IN_FOCUS, Floats, Scene, turning_points
 
+# Samples in a span of a band where there are too few a cycle to draw them as a line.
+_SPARSE_SPAN = 300
 _CYCLES_AS_LINES = 25
 _BANDS = 150
 _POINTS = 800
@@ -55,7 +57,9 @@ def draw_traces(
         _draw_row(scene, row(scene), row(scene.detail), line)
     for place, axis in enumerate(axes[-1]):
         axis.set_xlabel(style.TIME_LABEL if place == 0 else style.SHORT_TIME_LABEL)
-    axes[0][0].set_title("whole run", loc="left")
+    axes[0][0].set_title(
+        "whole run" if scene.interpolable else "whole run, at stored times", loc="left"
+    )
     if focus is not None:
         axes[0][1].set_title(_focus_name(scene, focus), loc="left")
     if scene.settled is not None:
@@ -138,8 +142,8 @@ def _draw_band(axes: Axes, scene: Scene, curve: Curve, cycles: float) -> None:
         dense = curve_times(scene, scene.start, scene.end, int(_POINTS_PER_CYCLE * cycles))
         times, low, high = band(dense, curve.at(dense), cycles)
     else:
-        # One cycle alone holds too few samples to reach its own highest and lowest value.
-        times, low, high = band(scene.times, curve.samples, cycles / 3)
+        # A span needs many samples to come near the extremes: few a cycle beat with the cycles.
+        times, low, high = band(scene.times, curve.samples, len(scene.times) / _SPARSE_SPAN)
     axes.fill_between(times, low, high, color=curve.colour, alpha=0.22, lw=0)
     for edge in (low, high):
         axes.plot(times, edge, curve.dashes, color=curve.colour, lw=0.6 * curve.width)
