@@ -5,8 +5,7 @@ Judged while a run goes on, from what the integrator notes:
 - at rest: the displacement has become a small part of what it was;
 - steady: the shape changes by less than the tolerance in all that is still to come;
 - periodic: at successive maxima of the elastic energy the shape comes back, after every one or
-every
-  few of them, to within the tolerance in all that is still to come.
+  every few of them, to within the tolerance in all that is still to come.
 
 "All that is still to come" is what is left of a geometric decay, measured on the run itself: a
 motion that creeps is not taken for one that has arrived. What grows or does not decay has not
