@@ -111,6 +111,20 @@ def test_a_stored_shape_beside_a_plane_is_turned_into_it(tmp_path: Path) -> None
     np.testing.assert_allclose(np.abs(turned[:, 0]), np.hypot(nodes[:, 0], nodes[:, 1]), atol=1e-7)
 
 
+def test_a_stored_state_is_bent_less_or_more_by_the_amplitude(tmp_path: Path) -> None:
+    nodes = stored(tmp_path / "run.nc")
+    start = {"shape": "state", "file": str(tmp_path / "run.nc"), "amplitude": 0.5}
+    filament, state = state_of(start)
+
+    def inclination(shape: np.ndarray) -> np.ndarray:
+        links = np.diff(shape, axis=0)
+        return np.arctan2(np.hypot(links[:, 0], links[:, 1]), links[:, 2])
+
+    halved = 0.5 * inclination(nodes)
+    # The inclination is what is scaled, link by link, to round-off.
+    np.testing.assert_allclose(inclination(filament.nodes(state)), halved, atol=1e-12)
+
+
 def test_a_missing_state_is_refused_by_its_name(tmp_path: Path) -> None:
     start = {"shape": "state", "file": str(tmp_path / "gone.nc")}
     assert "gone.nc" in complaint(lambda: state_of(start))

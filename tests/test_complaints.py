@@ -112,7 +112,7 @@ def test_the_range_of_a_conditional_key_is_told(
             "start",
             {"amplitude": 0.1, "shape": "straight"},
             "shape = 'straight'",
-            "'kicked', 'planar', 'helix' or 'mode'",
+            "'kicked', 'planar', 'helix', 'mode' or 'state'",
         ),
         ("time", {"limit": 5.0}, "until = 1.0", "'settled'"),
     ],

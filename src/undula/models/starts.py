@@ -91,6 +91,8 @@ def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
         raise InputError(
             f"nodes of shape {nodes.shape} are no shape; give finite values (M + 1, 3)"
         )
+    if not (is_number(amplitude) and amplitude > 0.0):
+        raise InputError(f"amplitude = {amplitude!r} has to be a number above 0")
     links = np.diff(nodes, axis=0)
     if links.shape[0] * model.dimension == model.size and amplitude == 1.0:
         return _in_plane(model, nodes)

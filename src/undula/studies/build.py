@@ -27,7 +27,7 @@ _STARTS: Mapping[str, Callable[[Filament, StartTable], State]] = {
         model, table.amplitude, right_handed=table.handedness == "right"
     ),
     "mode": lambda model, table: mode(model, table.amplitude, angle=table.angle),
-    "state": lambda model, table: _stored_state(model, Path(table.file or "")),
+    "state": lambda model, table: _stored_state(model, Path(table.file or ""), table.amplitude),
 }
 
 
@@ -85,5 +85,5 @@ def build_schedule(wanted: RunInput) -> Schedule:
     return Schedule(**wanted.time.model_dump())
 
 
-def _stored_state(model: Filament, path: Path) -> State:
-    return from_state(model, load_result(path)["nodes"].values[-1])
+def _stored_state(model: Filament, path: Path, amplitude: float) -> State:
+    return from_state(model, load_result(path)["nodes"].values[-1], amplitude)

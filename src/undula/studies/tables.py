@@ -5,7 +5,7 @@ Numbers are dimensionless: lengths in L, forces in B/L^2, times in zeta_perp L^4
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -100,8 +100,8 @@ class StartTable(Table):
     shape
         The family of starts.
     amplitude
-        Largest inclination to the axis, radians, above 0 and at most pi; not for ``straight``
-        and ``state``.
+        Largest inclination to the axis, radians, above 0 and at most pi; for ``state`` a factor
+        on the stored inclinations instead, 1 unless given; not for ``straight``.
     seed
         Seed of the random kick, from 0 to 2^63 - 1; for ``kicked``.
     angle
@@ -119,7 +119,7 @@ class StartTable(Table):
         description="'kicked', 'straight', 'planar', 'helix', 'mode' or 'state'",
     )
     amplitude: float = Field(
-        default=1e-2, gt=0.0, le=math.pi, description="a number above 0 and at most pi (radians)"
+        default=1e-2, gt=0.0, le=math.pi, description="a number above 0 and at most pi"
     )
     seed: int = Field(default=1, ge=0, lt=2**63, description="a whole number from 0 to 2^63 - 1")
     angle: float = Field(default=0.0, description="a finite number (radians)")
@@ -127,12 +127,19 @@ class StartTable(Table):
     file: str | None = Field(default=None, min_length=1, description="the name of a result file")
 
     only_with: ClassVar[Mapping[str, OnlyWith]] = {
-        "amplitude": OnlyWith("shape", ("kicked", "planar", "helix", "mode")),
+        "amplitude": OnlyWith("shape", ("kicked", "planar", "helix", "mode", "state")),
         "seed": OnlyWith("shape", ("kicked",)),
         "angle": OnlyWith("shape", ("planar", "mode")),
         "handedness": OnlyWith("shape", ("helix",)),
         "file": OnlyWith("shape", ("state",)),
     }
+
+    @model_validator(mode="before")
+    @classmethod
+    def _state_is_taken_as_it_is(cls, given: Any) -> Any:
+        if isinstance(given, Mapping) and given.get("shape") == "state":
+            return {"amplitude": 1.0, **given}
+        return given
 
     @model_validator(mode="after")
     def _state_has_a_file(self) -> Self:
