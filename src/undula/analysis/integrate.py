@@ -27,16 +27,6 @@ class Progress:
     steps: int
     seconds: float
 
-    @property
-    def rate(self) -> float:
-        """Time covered a second [T/s]."""
-        return self.time / self.seconds if self.seconds > 0.0 else 0.0
-
-    @property
-    def remaining(self) -> float:
-        """Seconds still to go, at the latest, at the rate so far."""
-        return (self.end - self.time) / self.rate if self.rate > 0.0 else float("inf")
-
 
 def integrate(
     model: Model,

@@ -80,7 +80,6 @@ class Pace:
     """How the system moved at an instant, measured as the integrator measures: see `size`."""
 
     time: float
-    speed: float
     shape_speed: float
     displacement: float
     turn_rate: float
@@ -118,7 +117,7 @@ class Watch:
     def to_arrays(self) -> dict[str, Array]:
         """Return all that was taken down, as arrays."""
         return {
-            "paces": np.array([astuple(pace) for pace in self.paces]).reshape(-1, 5),
+            "paces": np.array([astuple(pace) for pace in self.paces]).reshape(-1, 4),
             "return_times": np.array([time for time, _ in self.returns]),
             "return_nodes": np.array([nodes for _, nodes in self.returns]),
         }

@@ -156,7 +156,6 @@ class Simulation:
         real = self.memory.real
         return Pace(
             time=float(real[names.TIME]),
-            speed=float(real[names.SPEED]),
             shape_speed=float(real[names.SHAPE_SPEED]),
             displacement=float(real[names.DISPLACEMENT]),
             turn_rate=float(real[names.TURN_RATE]),

@@ -78,14 +78,6 @@ def _register_rigid(rod: Any) -> None:
                     band[m * i + d, half + a - d - m] = -t[i, a] / h
 
 
-def _register_extensible(rod: Any) -> None:
-    exact = derivative_kernel(rod.dimension, True)
-
-    @implements(matrix, rod)
-    def rod_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
-        exact(system, y, w, c, turn, band)
-
-
 @generic
 def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any:
     """Write the exact derivative of the residual to band (n, 6 m - 1)."""
@@ -94,7 +86,10 @@ def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any
 for _rod in RODS:
     _derivative: Any = derivative_kernel(_rod.dimension, _rod.extensible)
     implements(derivative, _rod)(_derivative.py_func)
-    (_register_extensible if _rod.extensible else _register_rigid)(_rod)
+    if _rod.extensible:
+        implements(matrix, _rod)(_derivative.py_func)
+    else:
+        _register_rigid(_rod)
 
 
 @entry
