@@ -5,9 +5,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 import pytest
 
-from undula.arrays import State
+from undula.arrays import Points, State
 from undula.models.filament import Filament
 from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.profiles import ProfileLoad, TableLoad
 
 
 class Form(NamedTuple):
@@ -23,13 +24,22 @@ class Form(NamedTuple):
 ALL_FORMS = [Form(kept, confined) for kept in ("exact", "weak") for confined in (False, True)]
 RIGID_FORMS = [form for form in ALL_FORMS if form.inextensibility == "exact"]
 FREE_FORMS = [form for form in ALL_FORMS if not form.confined]
-#: One of each profile, and both ends of the linear one's range.
+
+
+def stepped(s: Points) -> Points:
+    """Return a density that grows with s and jumps at 0.3, as given by a user."""
+    return np.exp(2.0 * s) * np.where(s < 0.3, 1.0, 2.0)
+
+
+#: One of each profile, both ends of the linear one's range, and a table that pulls in places.
 ALL_LOADS: list[Load] = [
     TipLoad(75.0),
     PointLoad(60.0, 0.37),
     LinearLoad(90.0, -1.0),
     LinearLoad(90.0, 1.0),
     PowerLoad(120.0, 2.5),
+    TableLoad(100.0, (0.0, 0.15, 0.6, 1.0), (2.0, -1.0, 3.0, 1.0)),
+    ProfileLoad(80.0, stepped, (0.3,)),
 ]
 ALL_DRAG_RATIOS = [1.0, 2.0, 5.0]
 

@@ -16,6 +16,7 @@ from scipy.integrate import quad
 from undula.arrays import Array, Links, State
 from undula.models.filament import Filament
 from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad
+from undula.models.profiles import ProfileLoad, TableLoad
 
 #: A complex step whose square is lost to round-off beside any length.
 _STEP = 1e-30
@@ -27,7 +28,27 @@ def density(load: Load, s: float) -> float:
         return load.force * (1.0 + load.slope * (2.0 * s - 1.0))
     if isinstance(load, PowerLoad):
         return load.force * (load.exponent + 1.0) * float(s**load.exponent)
+    if isinstance(load, TableLoad | ProfileLoad):
+        return load.force * _shape(load, s) / _total(load)
     raise TypeError(f"{load} is not spread over the filament")
+
+
+def _shape(load: TableLoad | ProfileLoad, s: float) -> float:
+    if isinstance(load, TableLoad):
+        return float(np.interp(s, load.s, load.density))
+    return float(load.density(np.array([s]))[0])
+
+
+@cache
+def _total(load: TableLoad | ProfileLoad) -> float:
+    smooth = pairwise([0.0, *_rough_places(load), 1.0])
+    return sum(quad(lambda s: _shape(load, s), a, b, epsabs=0.0)[0] for a, b in smooth)
+
+
+def _rough_places(load: Load) -> tuple[float, ...]:
+    if isinstance(load, TableLoad):
+        return load.s[1:-1]
+    return load.kinks if isinstance(load, ProfileLoad) else ()
 
 
 @cache
@@ -39,8 +60,10 @@ def shares(load: Load, links: int) -> tuple[Links, Links]:
     head, foot = np.zeros(links), np.zeros(links)
     wanted = {"epsabs": 1e-12 * load.force, "epsrel": 1e-9}
     for i, (a, b) in enumerate(pairwise(ends)):
-        head[i] = quad(lambda s, a=a: density(load, s) * (s - a) * links, a, b, **wanted)[0]
-        foot[i] = quad(lambda s, b=b: density(load, s) * (b - s) * links, a, b, **wanted)[0]
+        for low, high in pairwise([a, *(s for s in _rough_places(load) if a < s < b), b]):
+            part = (low, high)
+            head[i] += quad(lambda s, a=a: density(load, s) * (s - a) * links, *part, **wanted)[0]
+            foot[i] += quad(lambda s, b=b: density(load, s) * (b - s) * links, *part, **wanted)[0]
     return head, foot
 
 

@@ -18,6 +18,10 @@ LOADS = [
     ({"profile": "point", "force": 80.0, "position": 0.6}, un.PointLoad(80.0, 0.6)),
     ({"profile": "linear", "slope": -0.5}, un.LinearLoad(75.0, -0.5)),
     ({"profile": "power", "exponent": 2.0}, un.PowerLoad(75.0, 2.0)),
+    (
+        {"profile": "table", "s": [0, 0.3, 1], "density": [1, 2, 0.5]},
+        un.TableLoad(75.0, (0.0, 0.3, 1.0), (1.0, 2.0, 0.5)),
+    ),
 ]
 SMALL = {"segments": 8}
 

@@ -25,8 +25,8 @@ def complaint_on(**tables: Any) -> str:
             "load",
             "zzz",
             1,
-            "load.zzz is not a known key; the keys of [load] are profile, force, position, slope"
-            " and exponent",
+            "load.zzz is not a known key; the keys of [load] are profile, force, position, slope,"
+            " exponent, s and density",
         ),
         ("load", "a\nb", 1, "load.'a\\nb' is not a known key; the keys of [load] are"),
         (
@@ -45,8 +45,8 @@ def complaint_on(**tables: Any) -> str:
             "load",
             "profile",
             "tpi",
-            "load.profile = 'tpi' is not known; load.profile takes 'tip', 'point', 'linear' or"
-            " 'power'",
+            "load.profile = 'tpi' is not known; load.profile takes 'tip', 'point', 'linear',"
+            " 'power' or 'table'",
         ),
         ("load", "profile", 5, "load.profile = 5 is a whole number; load.profile takes 'tip'"),
         (
@@ -104,6 +104,8 @@ def test_the_range_of_a_conditional_key_is_told(
         ("load", {"slope": 0.5}, "profile = 'tip'", "'linear'"),
         ("load", {"position": 1.0}, "profile = 'tip'", "'point'"),
         ("load", {"exponent": 7.0}, "profile = 'tip'", "'power'"),
+        ("load", {"s": [0.0, 1.0]}, "profile = 'tip'", "'table'"),
+        ("load", {"density": [1.0], "profile": "point"}, "profile = 'point'", "'table'"),
         ("start", {"angle": 1.0}, "shape = 'kicked'", "'planar' or 'mode'"),
         ("start", {"handedness": "left"}, "shape = 'kicked'", "'helix'"),
         ("start", {"file": "a.nc"}, "shape = 'kicked'", "'state'"),
@@ -155,6 +157,66 @@ def test_a_key_that_nothing_would_read_is_refused(
 )
 def test_tables_that_do_not_fit_are_named(tables: dict[str, Any], sentence: str) -> None:
     assert complaint_on(**tables) == sentence
+
+
+LIST_OF_S = "load.s takes a list of numbers, increasing from 0 to 1"
+LIST_OF_DENSITY = "load.density takes a list of numbers, one for each s"
+
+
+@pytest.mark.parametrize(
+    ("keys", "sentence"),
+    [
+        (
+            {"density": [1, float("nan")]},
+            f"load.density[1] = nan is not a finite number; {LIST_OF_DENSITY}",
+        ),
+        (
+            {"density": [float("inf"), 1]},
+            f"load.density[0] = inf is not a finite number; {LIST_OF_DENSITY}",
+        ),
+        ({"s": [0, "1"]}, f"load.s[1] = '1' is text; {LIST_OF_S}"),
+        ({"s": [False, 1]}, f"load.s[0] = false is a truth value; {LIST_OF_S}"),
+        ({"s": [[0], 1]}, f"load.s[0] = [0] is a list; {LIST_OF_S}"),
+        ({"s": 5}, f"load.s = 5 is a whole number; {LIST_OF_S}"),
+        ({"s": "0, 1"}, f"load.s = '0, 1' is text; {LIST_OF_S}"),
+        ({"s": {"a": 1}}, f"load.s = {{'a': 1}} is a table; {LIST_OF_S}"),
+        (
+            {"s": [0, "a", "b"], "density": 1},
+            f"load.s[1] = 'a' is text; {LIST_OF_S} (1 more mistake)",
+        ),
+        ({"s": []}, "load.density has 2 values, where s has 0; give one at each arc length"),
+        ({"s": [0], "density": [1]}, "load.s has 1 value; give at least 2, from 0 to 1"),
+        (
+            {"density": [1, 2, 3]},
+            "load.density has 3 values, where s has 2; give one at each arc length",
+        ),
+        (
+            {"s": [0, 0.5, 0.5, 1], "density": [1, 1, 2, 2]},
+            "load.s[2] = 0.5 does not exceed s[1] = 0.5; give increasing arc lengths, and a jump as"
+            " two that are close",
+        ),
+        (
+            {"s": [0, 0.9]},
+            "load.s runs from 0.0 to 0.9; give the density from s = 0, the clamp,"
+            " to s = 1, the tip",
+        ),
+        (
+            {"density": [1, -3]},
+            "load.density adds up to -1; a follower force that pushes has to have a positive total",
+        ),
+    ],
+)
+def test_a_table_that_is_no_load_is_named(keys: dict[str, Any], sentence: str) -> None:
+    table = {"profile": "table", "s": [0, 1], "density": [1, 2]}
+    assert complaint_on(load=table | keys) == sentence
+
+
+@pytest.mark.parametrize(("given", "missing"), [("s", "density"), ("density", "s")])
+def test_half_a_table_is_refused(given: str, missing: str) -> None:
+    assert complaint_on(load={"profile": "table", given: [0, 1]}) == (
+        f"load.profile = 'table' needs load.{missing}; give load.s and load.density as lists of"
+        " numbers of one length"
+    )
 
 
 def test_of_several_mistakes_the_first_is_told_and_the_others_are_counted() -> None:

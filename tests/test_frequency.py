@@ -11,8 +11,7 @@ from undula.analysis.frequency import (
     shape_frequency,
     whole_motion_frequency,
 )
-from undula.analysis.observables import ComplexArray
-from undula.arrays import Array
+from undula.arrays import Array, ComplexArray
 
 ARC = np.linspace(0.0, 1.0, 11)
 

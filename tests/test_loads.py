@@ -2,16 +2,40 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from numpy.polynomial import chebyshev
 
 import naive
 from cases import every_load
 from refusal import complaint
+from undula.arrays import Points
 from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.profiles import ProfileLoad, TableLoad
+
+
+def stepped(s: Points) -> Points:
+    return np.where(s < 0.3, 1.0, 3.0)
+
+
+#: Profiles as a user may give them, with their centres, integrated by hand.
+PROFILES = {
+    ProfileLoad(1.0, np.exp): 1.0 / (math.e - 1.0),
+    ProfileLoad(1.0, stepped, (0.3,)): 1.41 / 2.4,
+}
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> TableLoad:
+    inner = draw(st.lists(st.integers(1, 999), unique=True, max_size=6))
+    values = st.just(0.0) | st.floats(1e-3, 1e3)
+    density = draw(st.lists(values, min_size=len(inner) + 2, max_size=len(inner) + 2).filter(any))
+    return TableLoad(draw(forces), [0.0, *(i / 1000 for i in sorted(inner)), 1.0], density)
+
 
 # No subnormal numbers, which have no relative accuracy.
 forces = st.just(0.0) | st.floats(1e-3, 1e3)
@@ -22,6 +46,8 @@ loads = st.one_of(
     st.builds(PointLoad, forces, positions),
     st.builds(LinearLoad, forces, st.floats(-1.0, 1.0)),
     st.builds(PowerLoad, forces, st.floats(0.0, 50.0)),
+    tables(),
+    st.builds(lambda load, force: replace(load, force=force), st.sampled_from([*PROFILES]), forces),
 )
 
 
@@ -31,6 +57,16 @@ def centre(load: Load) -> float:
         return load.position
     if isinstance(load, LinearLoad):
         return 0.5 + load.slope / 6.0
+    if isinstance(load, TableLoad):
+        lines = list(zip(pairwise(load.s), pairwise(load.density), strict=True))
+        total = sum((b - a) * (low + high) / 2.0 for (a, b), (low, high) in lines)
+        moments = (
+            (b - a) * (low * (2 * a + b) + high * (a + 2 * b)) / 6.0
+            for (a, b), (low, high) in lines
+        )
+        return sum(moments) / total
+    if isinstance(load, ProfileLoad):
+        return PROFILES[replace(load, force=1.0)]
     assert isinstance(load, PowerLoad)
     return (load.exponent + 1.0) / (load.exponent + 2.0)
 
@@ -153,3 +189,68 @@ def test_an_exponent_that_concentrates_the_load_at_the_clamp_is_refused_by_name(
     exponent: float,
 ) -> None:
     assert f"exponent = {exponent}" in complaint(lambda: PowerLoad(75.0, exponent))
+
+
+@given(loads)
+def test_breaks_lie_inside_the_filament_and_increase(load: Load) -> None:
+    ends = (0.0, *load.breaks, 1.0)
+    assert all(a < b for a, b in pairwise(ends))
+
+
+def unresolved(load: Load, skip: int = 0) -> float:
+    """Return how far degree 20 misses the force below, at worst, on all pieces but the first few, if any, to skip."""
+    nodes, between = chebyshev.chebpts1(21), np.cos(np.linspace(0.0, np.pi, 200))
+    missed = 0.0
+    for a, b in list(pairwise((0.0, *load.breaks, 1.0)))[skip:]:
+        # A point load's own value at its position belongs to the piece beyond.
+        at_nodes, at_between = (
+            np.array(
+                load.force_below(np.clip(a + 0.5 * (b - a) * (1.0 + x), a, np.nextafter(b, a)))
+            )
+            for x in (nodes, between)
+        )
+        series = chebyshev.chebfit(nodes, at_nodes, 20)
+        missed = max(missed, np.abs(chebyshev.chebval(between, series) - at_between).max())
+    return missed / load.force
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        TipLoad(75.0),
+        PointLoad(75.0, 0.37),
+        LinearLoad(75.0, -0.4),
+        *(PowerLoad(75.0, p) for p in (0.0, 1.0, 7.0, 8.5, 12.0, 17.9)),
+        *(PowerLoad(75.0, p) for p in (18.1, 20.001, 22.0, 22.3, 25.0, 40.001, 44.5, 60.0, 1e3)),
+        TableLoad(75.0, (0.0, 0.2, 0.5, 1.0), (1.0, 3.0, -1.0, 2.0)),
+        ProfileLoad(75.0, stepped, (0.3,)),
+        ProfileLoad(75.0, lambda s: np.cosh(30.0 * s)),
+    ],
+    ids=repr,
+)
+def test_between_breaks_a_polynomial_of_degree_20_resolves_the_load(load: Load) -> None:
+    # Round-off of the series and of steep powers of rounded arc lengths.
+    assert unresolved(load) <= 2e-13
+
+
+@pytest.mark.parametrize("exponent", [1e5, 1e6])
+def test_a_power_of_any_steepness_is_resolved_as_far_as_its_arc_lengths_are(
+    exponent: float,
+) -> None:
+    # An arc length rounded by 1e-16 changes s^p by p times as much.
+    assert unresolved(PowerLoad(75.0, exponent)) <= 1e-16 * exponent + 2e-13
+
+
+@pytest.mark.parametrize("exponent", [0.01, 0.5, 1.5, 2.5, 7.5])
+def test_the_singularity_of_a_power_is_kept_to_the_first_piece(exponent: float) -> None:
+    load = PowerLoad(75.0, exponent)
+    assert unresolved(load, skip=1) <= 2e-13  # round-off
+    # At the clamp itself the series converges slowly, from what is small.
+    assert unresolved(load) <= 3e-6
+
+
+@pytest.mark.parametrize("exponent", [3e16, 1e17, 3e17, 1e300])
+def test_a_layer_too_thin_for_numbers_has_no_break_in_it(exponent: float) -> None:
+    breaks = PowerLoad(75.0, exponent).breaks
+    assert sorted(set(breaks)) == list(breaks)
+    assert all(s < 1.0 for s in breaks)

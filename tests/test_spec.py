@@ -54,6 +54,17 @@ loads = st.one_of(
     chosen("profile", "point", force=force, position=st.floats(1e-3, 1.0)),
     chosen("profile", "linear", force=force, slope=st.floats(-1.0, 1.0)),
     chosen("profile", "power", force=force, exponent=st.floats(0.0, 50.0)),
+    st.fixed_dictionaries(
+        {
+            "profile": st.just("table"),
+            "s": st.just([0, 0.25, 0.3, 1]),
+            # One that pushes outweighs whatever the others pull.
+            "density": st.lists(st.floats(-1.0, 1e6), min_size=3, max_size=3).map(
+                lambda d: [*d, 9]
+            ),
+        },
+        optional={"force": force},
+    ),
 )
 # No helix: it does not go with a confined model.
 starts = st.one_of(
@@ -100,7 +111,13 @@ def test_the_dumped_input_keeps_every_given_value(tables: dict[str, Any]) -> Non
 
 @given(loads)
 def test_a_complete_load_shows_the_defaults_of_the_keys_that_it_uses(load: dict[str, Any]) -> None:
-    uses = {"tip": [], "point": ["position"], "linear": ["slope"], "power": ["exponent"]}
+    uses = {
+        "tip": [],
+        "point": ["position"],
+        "linear": ["slope"],
+        "power": ["exponent"],
+        "table": ["s", "density"],
+    }
     dumped = parse_input({"load": load}).dump()["load"]
     assert list(dumped) == ["profile", "force", *uses[load["profile"]]]
 
@@ -122,6 +139,10 @@ def test_the_input_cannot_be_changed_after_the_check() -> None:
         ({"profile": "point", "position": 0.8}, "point force 75 at s = 0.8"),
         ({"profile": "linear", "slope": 0.5}, "linear force 75, slope 0.5"),
         ({"profile": "power", "force": 37.25, "exponent": 2}, "power force 37.25, exponent 2"),
+        (
+            {"profile": "table", "s": [0, 0.2, 1], "density": [1, 2, 0]},
+            "table force 75 (3 points)",
+        ),
     ],
 )
 def test_the_load_is_told_in_words(load: dict[str, Any], text: str) -> None:
@@ -152,6 +173,23 @@ def test_a_byte_order_mark_is_no_obstacle(tmp_path: Path) -> None:
 )
 def test_an_override_is_read_as_toml_and_else_as_text(override: str, value: object) -> None:
     assert read_input(None, [override]).time.until == value
+
+
+def test_a_table_is_given_by_overrides_in_any_order() -> None:
+    overrides = ["load.density=[1,2]", "load.profile=table", "load.s=[0, 1]"]
+    for order in (overrides, overrides[::-1]):
+        load = read_input(None, order).load
+        assert (load.profile, load.s, load.density) == ("table", (0.0, 1.0), (1.0, 2.0))
+
+
+def test_a_table_is_read_from_a_file(tmp_path: Path) -> None:
+    path = written(tmp_path, '[load]\ndensity = [1, 0]\ns = [0, 1]\nprofile = "table"\n')
+    assert read_input(path).dump()["load"] == {
+        "profile": "table",
+        "force": 75.0,
+        "s": [0.0, 1.0],
+        "density": [1.0, 0.0],
+    }
 
 
 def test_a_file_name_in_an_override_needs_no_quotes() -> None:

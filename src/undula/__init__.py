@@ -13,9 +13,16 @@ if TYPE_CHECKING:
     from undula.analysis.integrate import integrate
     from undula.analysis.record import dataset_of
     from undula.analysis.run import Run
+    from undula.analysis.stability import (
+        critical_curve,
+        critical_force,
+        growth_curve,
+        spectrum,
+    )
     from undula.errors import InputError
     from undula.models.filament import Filament
     from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+    from undula.models.profiles import ProfileLoad, TableLoad
     from undula.models.scales import Scales
     from undula.models.starts import from_state, helix, kicked, mode, planar, straight
     from undula.studies.store import load_result
@@ -27,17 +34,23 @@ _HOMES = {
     "Load": "undula.models.loads",
     "PointLoad": "undula.models.loads",
     "PowerLoad": "undula.models.loads",
+    "ProfileLoad": "undula.models.profiles",
     "Run": "undula.analysis.run",
     "Scales": "undula.models.scales",
+    "TableLoad": "undula.models.profiles",
     "TipLoad": "undula.models.loads",
+    "critical_curve": "undula.analysis.stability",
+    "critical_force": "undula.analysis.stability",
     "dataset_of": "undula.analysis.record",
     "from_state": "undula.models.starts",
+    "growth_curve": "undula.analysis.stability",
     "helix": "undula.models.starts",
     "integrate": "undula.analysis.integrate",
     "kicked": "undula.models.starts",
     "load_result": "undula.studies.store",
     "mode": "undula.models.starts",
     "planar": "undula.models.starts",
+    "spectrum": "undula.analysis.stability",
     "straight": "undula.models.starts",
 }
 
@@ -50,11 +63,16 @@ __all__ = [
     "Load",
     "PointLoad",
     "PowerLoad",
+    "ProfileLoad",
     "Run",
     "Scales",
+    "TableLoad",
     "TipLoad",
+    "critical_curve",
+    "critical_force",
     "dataset_of",
     "from_state",
+    "growth_curve",
     "helix",
     "integrate",
     "kicked",
@@ -62,6 +80,7 @@ __all__ = [
     "mode",
     "observables",
     "planar",
+    "spectrum",
     "straight",
     "views",
 ]

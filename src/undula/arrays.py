@@ -17,3 +17,5 @@ Nodes = Array
 Shapes = Array
 #: A state of a model, shape (size,).
 State = Array
+#: Any complex array.
+ComplexArray = NDArray[np.complex128]

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from undula.analysis.observables import ComplexArray, arc_weights
+from undula.analysis.observables import arc_weights
 from undula.analysis.planes import in_plane, plane_angle
-from undula.arrays import Array, Instants, Shapes
+from undula.arrays import Array, ComplexArray, Instants, Shapes
 
 # A second direction weaker than this is noise or a faster mode about to vanish: one mode is left.
 SECOND_DIRECTION = 1e-3

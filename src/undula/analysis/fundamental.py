@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from undula.analysis.harmonics import MAX_HARMONICS, HarmonicFit, fit_harmonics, harmonic_count
-from undula.analysis.observables import ComplexArray
 from undula.analysis.spectral import spectral_peak
-from undula.arrays import Instants
+from undula.arrays import ComplexArray, Instants
 
 # Below this many periods in the window a frequency and a drift cannot be told apart: no answer.
 MIN_PERIODS = 2.5

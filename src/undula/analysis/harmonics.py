@@ -15,9 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import toeplitz
 
-from undula.analysis.observables import ComplexArray
 from undula.analysis.spectral import hann
-from undula.arrays import Array, Instants
+from undula.arrays import Array, ComplexArray, Instants
 
 # More harmonics gain nothing: those of a smooth motion fall geometrically.
 MAX_HARMONICS = 6

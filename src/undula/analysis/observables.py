@@ -11,12 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from undula.arrays import Array, Instants, Shapes
-
-#: Complex values, any shape; for transverse positions x + i y.
-ComplexArray = NDArray[np.complex128]
+from undula.arrays import Array, ComplexArray, Instants, Shapes
 
 
 def arc_weights(count: int) -> Array:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from undula.analysis.observables import ComplexArray
-from undula.arrays import Array, Instants
+from undula.arrays import Array, ComplexArray, Instants
 
 # Zero padding of the spectrum: its peak is then within 1/8 of the window's resolution.
 PADDING = 4

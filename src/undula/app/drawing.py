@@ -2,6 +2,7 @@
 
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -23,11 +24,23 @@ def figure_path(result: Path, out: Path | None) -> Path:
         The ending of `out` is none that a figure can have.
     """
     path = out or result.with_suffix(FORMATS[0])
+    check_figure_name("--out", path)
+    return path
+
+
+def check_figure_name(option: str, path: Path) -> None:
+    """Refuse a name that no figure can have.
+
+    Raises
+    ------
+    InputError
+        Its ending belongs to no format of figures.
+    """
     if path.suffix.lower() not in FORMATS:
         raise InputError(
-            f"--out {path} does not end like a figure; give a name that ends in .png, .pdf or .svg"
+            f"{option} {path} does not end like a figure; give a name that ends in .png, .pdf or"
+            " .svg"
         )
-    return path
 
 
 def movie_path(result: Path, out: Path | None) -> Path:
@@ -53,8 +66,19 @@ def draw_figure(stored: xr.Dataset, path: Path, *, overwrite: bool) -> None:
         The run has too few samples, or the file cannot be written.
     """
     claim_output(path, overwrite=overwrite)
+    save_figure(portrait(stored), path, overwrite=overwrite)
+
+
+def save_figure(figure: Any, path: Path, *, overwrite: bool) -> None:
+    """Write a matplotlib figure, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        The file exists and is not to be replaced, or cannot be written.
+    """
     image = BytesIO()
-    portrait(stored).savefig(image, format=path.suffix[1:].lower(), dpi=_DOTS_PER_INCH)
+    figure.savefig(image, format=path.suffix[1:].lower(), dpi=_DOTS_PER_INCH)
     write_whole(path, image.getvalue(), overwrite=overwrite)
 
 

@@ -1,9 +1,9 @@
 """The elastic filament: the linked rod with half-cell ends, second-order accurate in 1/segments."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
@@ -100,3 +100,12 @@ class Filament(LinkedRod):
         tensile = math.inf if self.inextensibility == "exact" else self.tensile_stiffness
         rod = _RODS[self.inextensibility, self.confined]
         return rod(joint, weight, head, foot, h, 1.0 - 1.0 / self.drag_ratio, tensile)
+
+    @property
+    def continuum(self) -> Load | None:
+        """The load of the inextensible filament that rigid links stand for; None for weak ones."""
+        return self.load if self.inextensibility == "exact" else None
+
+    def with_links(self, links: int) -> Self | None:
+        """Return the same filament made of another number of segments."""
+        return replace(self, segments=links)

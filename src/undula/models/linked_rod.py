@@ -9,6 +9,7 @@ import numpy as np
 
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError
+from undula.models.loads import Load
 from undula.models.model import Energetics
 from undula.models.rod import PlanarRod, SpatialRod
 from undula.models.rod_matrix import exact_derivative
@@ -133,6 +134,21 @@ class LinkedRod(ABC):
                 change[i, m * (i - 1) : m * (i - 1) + d] = -stretching[i]
         return change
 
+    def linearised(self) -> tuple[Array, Array]:
+        """Return stiffness and drag (N, N) of small displacements across the axis.
+
+        Displacements y of the nodes in one direction obey drag y' = -stiffness y.
+        """
+        y = self._moving(self.straight())[0]
+        m = self.dimension + 1
+        loaded, dragged = np.zeros((2, y.size, 6 * m - 1))
+        exact_derivative(self.system, y, np.zeros(y.size), 1.0, 0.0, loaded)
+        exact_derivative(self.system, y, np.zeros(y.size), 0.0, 0.0, dragged)
+        # Every m-th row and column belongs to the same direction; none else matters to it.
+        across = slice(m - 1, None, m)
+        stiffness, drag = (loaded - dragged)[::m, across], dragged[::m, across]
+        return to_dense(stiffness), to_dense(drag)
+
     def departure(self, x: State) -> float:
         """Return the root mean square difference of the tangents from straight [rad]."""
         away = np.reshape(x - self.straight(), (self.links, self.dimension))
@@ -206,6 +222,15 @@ class LinkedRod(ABC):
         reflected = np.array(x, dtype=float).reshape(self.links, self.dimension)
         reflected[:, 0] *= -1.0
         return reflected.ravel()
+
+    @property
+    def continuum(self) -> Load | None:
+        """The load of the continuous filament that the links stand for; None without one."""
+        return None
+
+    def with_links(self, links: int) -> Self | None:  # noqa: ARG002
+        """Return the same body made of another number of links; None if its links are the body."""
+        return None
 
     def with_(self, **changes: Any) -> Self:
         """Return the model with other values of its own fields or of its load's, such as force."""

@@ -1,10 +1,12 @@
 """Axial follower forces: how much of the total force each link carries, and where.
 
-A load has a total compressive force F and a density f_a(s) >= 0 along the filament, s in [0, 1],
-acting against the tangent: f = -f_a t. On a chain of links each link carries the integral of f_a
-over it, shared by its two nodes so that the first moment is exact as well. A concentrated force is
-shared linearly by the two links whose midpoints enclose it, so that its direction, too, is accurate
-to second order; beyond the last midpoint the last link carries it alone.
+A load has a total compressive force F and a density f_a(s) along the filament, s in [0, 1], acting
+against the tangent: f = -f_a t. The densities of this module are nowhere negative; one that the
+user gives (`undula.models.profiles`) may be, where it pulls. On a chain of links each link carries
+the integral of f_a over it, shared by its two nodes so that the first moment is exact as well. A
+concentrated force is shared linearly by the two links whose midpoints enclose it, so that its
+direction, too, is accurate to second order; beyond the last midpoint the last link carries it
+alone.
 
 Source of the profiles: Ling, Guo & Kanso (2018), equations for linear, concentrated and power-law
 forces.
@@ -17,6 +19,18 @@ import numpy as np
 
 from undula.arrays import Links, Points
 from undula.errors import InputError, is_number
+
+#: Up to this exponent a single polynomial of degree 20 resolves s^(p+1), or is it.
+_STEEP_FROM = 18.0
+#: Beyond it s^p is nearly exp(-d) at the depth d/p below the tip: on a piece between two of these
+#: depths it falls by no more than degree 20 follows, and below the last it is lost to round-off.
+_LAYER = (40.0, 20.0, 8.0)
+#: A shorter piece at the clamp would do nothing but spoil the conditioning of whoever uses it.
+_SHORTEST_FIRST_PIECE = 0.1
+#: From this exponent on the singularity of s^(p+1) at s = 0 is lost to round-off at degree 20.
+_SINGULAR_BELOW = 8.0
+#: Graded towards that singularity: the farther pieces do not see it, and on the first it is small.
+_NEAR_CLAMP = (0.1, 0.33)
 
 
 @dataclass(frozen=True)
@@ -34,6 +48,15 @@ class Load:
     def __post_init__(self) -> None:
         """Refuse values that are no load."""
         _require(self, "force", 0.0, np.inf, "a finite number, at least 0")
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Arc lengths inside (0, 1), increasing, that part the filament into smooth pieces.
+
+        On each piece a polynomial of degree about 20 gives `force_below` to round-off, but for a
+        weak singularity at the end of a piece.
+        """
+        return ()
 
     @abstractmethod
     def force_below(self, s: Points) -> Points:
@@ -64,6 +87,11 @@ class PointLoad(Load):
         """Refuse values that are no load."""
         super().__post_init__()
         _require(self, "position", np.nextafter(0.0, 1.0), 1.0, "a number in (0, 1]")
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The position, unless it is the tip."""
+        return (self.position,) if self.position < 1.0 else ()
 
     def force_below(self, s: Points) -> Points:
         """Return F beyond the position, 0 before it."""
@@ -125,6 +153,15 @@ class PowerLoad(Load):
         """Refuse values that are no load."""
         super().__post_init__()
         _require(self, "exponent", 0.0, np.inf, "a finite number, at least 0")
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Short pieces where s^(p+1) is singular at the clamp, or steep near the tip."""
+        p = self.exponent
+        if p > _STEEP_FROM:
+            layer = {1.0 - depth / p for depth in _LAYER}
+            return tuple(sorted(s for s in layer if _SHORTEST_FIRST_PIECE <= s < 1.0))
+        return _NEAR_CLAMP if p < _SINGULAR_BELOW and p % 1.0 else ()
 
     def force_below(self, s: Points) -> Points:
         """Return F s^(p+1)."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol, Self
 
 from undula.arrays import Array, Nodes, State
+from undula.models.loads import Load
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,14 @@ class Model(Protocol):
     @property
     def dimension(self) -> int:
         """Coordinates of a node in a state: 3, or 2 if confined to a plane."""
+
+    @property
+    def load(self) -> Load:
+        """The follower force."""
+
+    @property
+    def links(self) -> int:
+        """Number of links that the model is made of."""
 
     @property
     def system(self) -> Any:
@@ -61,6 +70,20 @@ class Model(Protocol):
 
     def jacobian(self, x: State) -> Array:
         """Return d rhs / dx, shape (size, size), exact."""
+
+    def linearised(self) -> tuple[Array, Array]:
+        """Return stiffness and drag (links, links) of small displacements across the axis.
+
+        Displacements y of the nodes in one direction obey drag y' = -stiffness y; the other
+        direction, if there is one, obeys the same and does not know of the first.
+        """
+
+    @property
+    def continuum(self) -> Load | None:
+        """The load of the continuous filament that the links stand for; None without one."""
+
+    def with_links(self, links: int) -> Self | None:
+        """Return the same body made of another number of links; None if its links are the body."""
 
     def departure(self, x: State) -> float:
         """Return how far x is from straight, in the norm in which the integrator measures."""

@@ -74,8 +74,8 @@ def mode(model: Model, amplitude: float = 1e-2, *, angle: float = 0.0) -> State:
 
 def leading_mode(model: Model) -> tuple[complex, Array]:
     """Return the leading eigenvalue of the straight state and its transverse mode (links,)."""
-    block = model.jacobian(model.straight())[:: model.dimension, :: model.dimension]
-    values, vectors = np.linalg.eig(block)
+    stiffness, drag = model.linearised()
+    values, vectors = np.linalg.eig(-np.linalg.solve(drag, stiffness))
     first = max(range(values.size), key=lambda k: (values[k].real, values[k].imag))
     return complex(values[first]), vectors[:, first]
 

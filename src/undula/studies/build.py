@@ -7,9 +7,9 @@ from undula.analysis.schedule import Schedule
 from undula.arrays import State
 from undula.models.filament import Filament
 from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.profiles import TableLoad
 from undula.models.starts import from_state, helix, kicked, mode, planar, straight
-from undula.studies.spec import RunInput
-from undula.studies.store import load_result
+from undula.studies.spec import FilamentInput, RunInput
 from undula.studies.tables import LoadTable, StartTable
 
 _LOADS: Mapping[str, Callable[[LoadTable], Load]] = {
@@ -17,6 +17,7 @@ _LOADS: Mapping[str, Callable[[LoadTable], Load]] = {
     "point": lambda table: PointLoad(table.force, table.position),
     "linear": lambda table: LinearLoad(table.force, table.slope),
     "power": lambda table: PowerLoad(table.force, table.exponent),
+    "table": lambda table: TableLoad(table.force, table.s or (), table.density or ()),
 }
 
 _STARTS: Mapping[str, Callable[[Filament, StartTable], State]] = {
@@ -31,7 +32,7 @@ _STARTS: Mapping[str, Callable[[Filament, StartTable], State]] = {
 }
 
 
-def build_model(wanted: RunInput) -> Filament:
+def build_model(wanted: FilamentInput) -> Filament:
     """Return the model that an input describes.
 
     Parameters
@@ -86,4 +87,7 @@ def build_schedule(wanted: RunInput) -> Schedule:
 
 
 def _stored_state(model: Filament, path: Path, amplitude: float) -> State:
+    # Files are slow to learn to read, and most starts need none.
+    from undula.studies.store import load_result
+
     return from_state(model, load_result(path)["nodes"].values[-1], amplitude)

@@ -73,8 +73,10 @@ def _sentence(
     if kind == IDLE_KEY:
         return _idle_key(table, key, value, details["ctx"])
     name = _name(table, key)
+    # In a list of numbers it is one entry that is wrong.
+    entry = "".join(f"[{part}]" for part in details["loc"][2:] if isinstance(part, int))
     verdict = _verdict(kind, value)
-    return f"{name} = {_show(value)} {verdict}; {name} takes {known[table][key]}"
+    return f"{name}{entry} = {_show(value)} {verdict}; {name} takes {known[table][key]}"
 
 
 def _wrong_table(table: str, value: Any, known: Mapping[str, Mapping[str, str]]) -> str:

@@ -1,8 +1,11 @@
-"""The input of one run: a frozen, checked record with a default for every key."""
+"""The input of a command: a frozen, checked record with a default for every key.
+
+One file describes a filament and may hold tables for several commands; each reads its own.
+"""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 from pydantic import Field, ValidationError, model_validator
 
@@ -10,21 +13,42 @@ from undula.errors import InputError
 from undula.studies.complaints import explain
 from undula.studies.overrides import apply_overrides, read_toml
 from undula.studies.strict_table import Table, conflict
-from undula.studies.tables import LoadTable, ModelTable, StartTable, TimeTable
+from undula.studies.tables import LoadTable, ModelTable, StabilityTable, StartTable, TimeTable
 
 
-class RunInput(Table):
-    """The complete, checked input of one run.
+class FilamentInput(Table):
+    """What every command reads.
 
     Attributes
     ----------
-    model, load, start, time
-        The four tables. Every key has a value; one that has no meaning under the choices made
-        holds its default and is left out of :meth:`dump`.
+    model, load
+        What moves, and what pushes it. Every key has a value; one that has no meaning under the
+        choices made holds its default and is left out of :meth:`dump`.
     """
 
     model: ModelTable = Field(default=ModelTable(), description="a table")
     load: LoadTable = Field(default=LoadTable(), description="a table")
+
+    @property
+    def load_text(self) -> str:
+        """The load in a few words, such as ``tip force 75``."""
+        return self.load.text
+
+    def dump(self) -> dict[str, Any]:
+        """Return the complete resolved input as plain JSON types.
+
+        Returns
+        -------
+        dict
+            Table name to keys and values, without the keys that have no meaning under the
+            choices made. :func:`parse_input` turns it back into an equal record.
+        """
+        return {name: getattr(self, name).dump() for name in type(self).model_fields}
+
+
+class RunInput(FilamentInput):
+    """The complete, checked input of one run: the filament, its start, and how long."""
+
     start: StartTable = Field(default=StartTable(), description="a table")
     time: TimeTable = Field(default=TimeTable(), description="a table")
 
@@ -42,21 +66,18 @@ class RunInput(Table):
             )
         return self
 
-    @property
-    def load_text(self) -> str:
-        """The load in a few words, such as ``tip force 75``."""
-        return self.load.text
 
-    def dump(self) -> dict[str, Any]:
-        """Return the complete resolved input as plain JSON types.
+class StabilityInput(FilamentInput):
+    """The complete, checked input of a question about the straight state."""
 
-        Returns
-        -------
-        dict
-            Table name to keys and values, without the keys that have no meaning under the
-            choices made. :func:`parse_input` turns it back into an equal record.
-        """
-        return {name: getattr(self, name).dump() for name in type(self).model_fields}
+    stability: StabilityTable = Field(default=StabilityTable(), description="a table")
+
+
+class _WholeFile(RunInput, StabilityInput):
+    """All that an input file may hold."""
+
+
+Input = TypeVar("Input", bound=FilamentInput)
 
 
 def parse_input(tables: Mapping[str, Any]) -> RunInput:
@@ -77,14 +98,11 @@ def parse_input(tables: Mapping[str, Any]) -> RunInput:
     InputError
         The first mistake, what would be right, and how many more there are.
     """
-    try:
-        return RunInput.model_validate(dict(tables))
-    except ValidationError as error:
-        raise InputError(explain(error, RunInput)) from None
+    return _checked(RunInput, tables)
 
 
 def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunInput:
-    """Read an input file, change single keys in it, and check the whole.
+    """Read the input of a run, change single keys in it, and check the whole.
 
     Parameters
     ----------
@@ -102,8 +120,32 @@ def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunIn
     Raises
     ------
     InputError
-        The file cannot be read or is not TOML, an override is malformed, or a key or value is
-        wrong. The sentence names the culprit and what would be right.
+        The file cannot be read or is not TOML, an override is malformed or meant for another
+        command, or a key or value is wrong. The sentence names the culprit and what would be
+        right.
     """
-    tables = {} if path is None else read_toml(path)
-    return parse_input(apply_overrides(tables, overrides))
+    return _read(RunInput, path, overrides)
+
+
+def read_stability_input(path: Path | None = None, overrides: Sequence[str] = ()) -> StabilityInput:
+    """Read the input of a question about the straight state, as `read_input` does for a run."""
+    return _read(StabilityInput, path, overrides)
+
+
+def _read(record: type[Input], path: Path | None, overrides: Sequence[str]) -> Input:
+    given = apply_overrides({} if path is None else read_toml(path), overrides)
+    _checked(_WholeFile, given)
+    for name in apply_overrides({}, overrides):
+        if name not in record.model_fields:
+            raise InputError(
+                f"--set {name}. changes a table that this command does not read; it reads"
+                f" {', '.join(f'[{known}]' for known in record.model_fields)}"
+            )
+    return _checked(record, {name: given[name] for name in record.model_fields if name in given})
+
+
+def _checked(record: type[Input], tables: Mapping[str, Any]) -> Input:
+    try:
+        return record.model_validate(dict(tables))
+    except ValidationError as error:
+        raise InputError(explain(error, record)) from None

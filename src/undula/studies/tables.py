@@ -1,20 +1,25 @@
-"""The four tables of an input file, with the default and the range of every key.
+"""The tables of an input file, with the default and the range of every key.
 
 Numbers are dimensionless: lengths in L, forces in B/L^2, times in zeta_perp L^4/B.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, PlainSerializer, model_validator
 
+from undula.errors import InputError
+from undula.models.profiles import TableLoad
 from undula.studies.strict_table import OnlyWith, Table, conflict
 
 Inextensibility = Literal["exact", "weak"]
-Profile = Literal["tip", "point", "linear", "power"]
+Profile = Literal["tip", "point", "linear", "power", "table"]
 Shape = Literal["kicked", "straight", "planar", "helix", "mode", "state"]
+LinearMethod = Literal["spectral", "modes", "discrete"]
 Handedness = Literal["right", "left"]
+#: A list, as TOML and JSON have it, held so that it cannot be changed; its numbers stay strict.
+Numbers = Annotated[tuple[float, ...], Field(strict=False), PlainSerializer(list)]
 
 
 class ModelTable(Table):
@@ -64,32 +69,69 @@ class LoadTable(Table):
         Slope alpha of a linear load, from -1 to 1: density F [1 + alpha (2 s - 1)].
     exponent
         Exponent p of a power load, at least 0: density F (p + 1) s^p.
+    s, density
+        The points of a table load: arclengths in L, increasing from 0 to 1, and the density at
+        each of them in any unit, linear in between and scaled to the total; for ``table``, which
+        cannot do without.
     """
 
-    profile: Profile = Field(default="tip", description="'tip', 'point', 'linear' or 'power'")
+    profile: Profile = Field(
+        default="tip", description="'tip', 'point', 'linear', 'power' or 'table'"
+    )
     force: float = Field(default=75.0, ge=0.0, description="a number of at least 0")
     position: float = Field(
         default=1.0, gt=0.0, le=1.0, description="a number above 0 and at most 1"
     )
     slope: float = Field(default=0.0, ge=-1.0, le=1.0, description="a number from -1 to 1")
     exponent: float = Field(default=1.0, ge=0.0, description="a number of at least 0")
+    s: Numbers | None = Field(default=None, description="a list of numbers, increasing from 0 to 1")
+    density: Numbers | None = Field(default=None, description="a list of numbers, one for each s")
 
     only_with: ClassVar[Mapping[str, OnlyWith]] = {
         "position": OnlyWith("profile", ("point",)),
         "slope": OnlyWith("profile", ("linear",)),
         "exponent": OnlyWith("profile", ("power",)),
+        "s": OnlyWith("profile", ("table",)),
+        "density": OnlyWith("profile", ("table",)),
     }
+
+    @model_validator(mode="after")
+    def _table_is_a_load(self) -> Self:
+        if self.profile != "table":
+            return self
+        if self.s is None or self.density is None:
+            missing = "load.s" if self.s is None else "load.density"
+            raise conflict(
+                f"load.profile = 'table' needs {missing}; give load.s and load.density as lists of"
+                " numbers of one length"
+            )
+        try:
+            TableLoad(self.force, self.s, self.density)
+        except InputError as error:
+            # The load names its values as the keys are named.
+            raise conflict(f"load.{str(error).removeprefix('TableLoad: ')}") from None
+        return self
 
     @property
     def text(self) -> str:
         """The load in a few words, such as ``point force 75 at s = 0.8``."""
+        return self.tell()
+
+    def tell(self, swept: Collection[str] = ()) -> str:
+        """Return the load in a few words, without the keys that a curve sweeps over."""
+        head = (
+            f"{self.profile} load"
+            if "force" in swept
+            else f"{self.profile} force {self.force:.12g}"
+        )
         details = {
-            "tip": "",
-            "point": f" at s = {self.position:.12g}",
-            "linear": f", slope {self.slope:.12g}",
-            "power": f", exponent {self.exponent:.12g}",
+            "position": f" at s = {self.position:.12g}",
+            "slope": f", slope {self.slope:.12g}",
+            "exponent": f", exponent {self.exponent:.12g}",
+            "s": f" ({len(self.s or ())} points)",
         }
-        return f"{self.profile} force {self.force:.12g}{details[self.profile]}"
+        told = [text for key, text in details.items() if key in self.dump() and key not in swept]
+        return head + "".join(told)
 
 
 class StartTable(Table):
@@ -177,3 +219,22 @@ class TimeTable(Table):
     atol: float = Field(default=1e-10, gt=0.0, description="a number above 0")
 
     only_with: ClassVar[Mapping[str, OnlyWith]] = {"limit": OnlyWith("until", ("settled",))}
+
+
+class StabilityTable(Table):
+    """The table ``[stability]``: how the straight state is judged.
+
+    Attributes
+    ----------
+    method
+        ``"spectral"`` on polynomials, ``"modes"`` on the paper's assumed modes, ``"discrete"`` for
+        the links as they are; by default spectral wherever links stand for a continuous filament.
+    paper_time
+        Whether rates and frequencies are given as the paper's printed equation has them, smaller
+        by the drag ratio.
+    """
+
+    method: LinearMethod | None = Field(
+        default=None, description="'spectral', 'modes' or 'discrete'"
+    )
+    paper_time: bool = Field(default=False, description="true or false")

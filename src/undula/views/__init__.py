@@ -1,6 +1,9 @@
 """Figures and movies of results: pure functions, and the only users of plotting libraries."""
 
+from undula.views.growth import growth_figure
 from undula.views.movie import movie
 from undula.views.portrait import portrait
+from undula.views.stability import stability_portrait
+from undula.views.thresholds import threshold_figure
 
-__all__ = ["movie", "portrait"]
+__all__ = ["growth_figure", "movie", "portrait", "stability_portrait", "threshold_figure"]

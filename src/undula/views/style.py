@@ -10,6 +10,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 INK = "#222222"
@@ -18,6 +19,7 @@ SHADOW = "#b9b9b9"
 GROUND = "#f3f3f1"
 SETTLED = "#eff2f5"
 FOCUS = "#dbe5ee"
+UNSTABLE = "#f9e6d8"
 X_COLOUR = "#0072B2"
 Y_COLOUR = "#D55E00"
 Z_COLOUR = "#009E73"
@@ -32,7 +34,17 @@ ENERGY_LABEL = "bending energy\n" r"$E$  $[B/L]$"
 POWER_LABEL = "power\n" r"$P$  $[B/(LT)]$"
 RATE_UNIT = r"cycles per $T$"
 PHASE_LABEL = "phase in the last period  [periods]"
+FORCE_LABEL = r"force $F$  $[B/L^2]$"
+ARC_LABEL = r"arc length $s$  $[L]$"
+DISPLACEMENT_LABEL = "displacement, arbitrary scale"
+CYCLE_LABEL = "phase  [cycles]"
 
+_PARAMETER_LABELS = {
+    "load.slope": r"slope $\alpha$",
+    "load.position": r"position $s_a$  $[L]$",
+    "load.exponent": r"exponent $p$",
+    "model.drag_ratio": r"drag ratio $\gamma$",
+}
 _PALE, _DARK = 0.08, 0.97
 _SETTINGS = {
     "font.family": ["DejaVu Sans"],
@@ -95,6 +107,38 @@ def shape_colours(count: int) -> NDArray[np.float64]:
     """
     places = np.linspace(_PALE, _DARK, count) if count > 1 else np.array([_DARK])
     return np.asarray(mpl.colormaps["viridis_r"](places), dtype=np.float64)
+
+
+def growth_rate_label(*, paper_time: bool) -> str:
+    """Name the growth rate with its unit."""
+    unit = r"\gamma/T" if paper_time else "1/T"
+    return rf"growth rate $\mathrm{{Re}}\,\sigma$  $[{unit}]$"
+
+
+def frequency_label(*, paper_time: bool) -> str:
+    """Name the frequency with its unit."""
+    return f"frequency  [{frequency_unit(paper_time=paper_time)}]"
+
+
+def frequency_unit(*, paper_time: bool) -> str:
+    """Name the unit of frequencies."""
+    # A rate that is smaller by the factor gamma is the same rate in a time unit shorter by gamma.
+    return r"cycles per $T/\gamma$" if paper_time else RATE_UNIT
+
+
+def parameter_label(name: str) -> str:
+    """Name a parameter such as "load.slope" by its symbol and unit; an unknown one as it is."""
+    return _PARAMETER_LABELS.get(name, name)
+
+
+def headed_figure(title: str, *, paper_time: bool) -> Figure:
+    """Start a figure of 10 by 5.5 inches with a title, and a word on an unusual time unit."""
+    figure = Figure(figsize=(10.0, 5.5))
+    figure.text(0.022, 0.955, title, fontsize=11.5)
+    if paper_time:
+        note = r"time unit of the printed equation, $T/\gamma$"
+        figure.text(0.978, 0.955, note, ha="right", color=QUIET)
+    return figure
 
 
 def _plain_defaults() -> dict[str, object]:

@@ -1,0 +1,213 @@
+"""The questions of `undula stability`: asked of the analysis, answered and drawn.
+
+Plotting is imported only if there is something to plot: the answer itself takes milliseconds.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from undula.analysis.linear_results import CriticalCurve, GrowthCurve, Onset, Spectrum
+from undula.analysis.stability import critical_curve, critical_force, growth_curve, spectrum
+from undula.app import stability_text as text
+from undula.app.meter import meter
+from undula.app.pace import duration
+from undula.arrays import Array
+from undula.models.model import Model
+from undula.studies.build import build_model
+from undula.studies.spec import StabilityInput
+
+# The figure of a single case shows this many forces, so far beyond the threshold and the force.
+_SHOWN, _BEYOND = 241, 1.3
+
+
+@dataclass(frozen=True)
+class Told:
+    """An answer in plain JSON types, and the same for people."""
+
+    answer: dict[str, Any]
+    text: str
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of the straight state.
+
+    Attributes
+    ----------
+    wanted : StabilityInput
+    forces : ndarray of shape (m,) or None
+        Forces at which the leading eigenvalue is asked for.
+    along : (str, ndarray of shape (k,)) or None
+        A parameter with its values.
+    """
+
+    wanted: StabilityInput
+    forces: Array | None
+    along: tuple[str, Array] | None
+
+
+def ask(question: Question, figure: Path | None) -> Told:
+    """Answer a question, and draw the answer if there is a name for the figure.
+
+    Raises
+    ------
+    InputError
+        A value is out of its range, or the figure cannot be written.
+    """
+    if question.forces is not None:
+        answered, draw = _ask_growth(question, question.forces)
+    elif question.along is not None:
+        answered, draw = _ask_thresholds(question, *question.along)
+    else:
+        answered, draw = _ask_onset(question)
+    if figure:
+        from undula.app.drawing import save_figure
+
+        save_figure(draw(), figure, overwrite=True)
+    head = {"status": "done", "load": question.wanted.load_text}
+    shown = {"figure": str(figure) if figure else None}
+    lines = f"{answered.text}\n  figure  {figure}" if figure else answered.text
+    return Told(head | answered.answer | shown, lines)
+
+
+def _ask_onset(question: Question) -> tuple[Told, Callable[[], Any]]:
+    model, options = _model(question)
+    onset, at_force = critical_force(model, **options), spectrum(model, **options)
+    title = question.wanted.load_text
+
+    def draw() -> Any:
+        from undula.views import stability_portrait
+
+        far = _BEYOND * max(onset.force or 0.0, at_force.force, 1.0)
+        growth = growth_curve(model, np.linspace(0.0, far, _SHOWN), **options)
+        return stability_portrait(onset, growth, at_force, title=title)
+
+    return Told(onset_answer(onset, at_force), text.onset_text(title, onset, at_force)), draw
+
+
+def _ask_growth(question: Question, forces: Array) -> tuple[Told, Callable[[], Any]]:
+    model, options = _model(question)
+    name, values = question.along or (None, None)
+    with _progress("growth rates") as progress:
+        growth = growth_curve(
+            model, forces, parameter=name, values=values, progress=progress, **options
+        )
+    title = _title(question, "load.force", name or "")
+
+    def draw() -> Any:
+        from undula.views import growth_figure
+
+        return growth_figure(growth, title=title)
+
+    return Told(growth_answer(growth), text.growth_text(title, growth)), draw
+
+
+def _ask_thresholds(question: Question, name: str, values: Array) -> tuple[Told, Callable[[], Any]]:
+    model, options = _model(question)
+    with _progress("thresholds") as progress:
+        curve = critical_curve(model, name, values, progress=progress, **options)
+    title = _title(question, "load.force", name)
+
+    def draw() -> Any:
+        from undula.views import threshold_figure
+
+        return threshold_figure(curve, title=title)
+
+    return Told(thresholds_answer(curve), text.thresholds_text(title, curve)), draw
+
+
+def onset_answer(onset: Onset, at_force: Spectrum) -> dict[str, Any]:
+    """Return an onset, with the spectrum at the given force, in plain JSON types."""
+    later = [
+        {
+            "force": crossing.force,
+            "frequency": crossing.frequency,
+            "growth_slope": crossing.growth_slope,
+            "error": crossing.error,
+        }
+        for crossing in onset.later
+    ]
+    leading = zip(at_force.rates, at_force.frequencies, at_force.errors, strict=True)
+    return {
+        "method": onset.method,
+        "paper_time": onset.paper_time,
+        **_thresholds(onset),
+        "later": later,
+        "force": at_force.force,
+        "spectrum": [
+            {"rate": float(rate), "frequency": float(frequency), "error": float(error)}
+            for rate, frequency, error in leading
+        ],
+    }
+
+
+def growth_answer(growth: GrowthCurve) -> dict[str, Any]:
+    """Return leading rates and frequencies, one entry for each force (and value)."""
+    points = []
+    for place in np.ndindex(growth.rates.shape):
+        of_parameter = {}
+        if growth.parameter is not None and growth.values is not None:
+            of_parameter = {growth.parameter: float(growth.values[place[0]])}
+        point = {
+            "force": float(growth.forces[place[-1]]),
+            "rate": float(growth.rates[place]),
+            "frequency": float(growth.frequencies[place]),
+            "error": float(growth.errors[place]),
+        }
+        points.append(of_parameter | point)
+    return {"method": growth.method, "paper_time": growth.paper_time, "points": points}
+
+
+def thresholds_answer(curve: CriticalCurve) -> dict[str, Any]:
+    """Return the thresholds along a parameter, one entry for each value."""
+    return {
+        "method": curve.method,
+        "paper_time": curve.onsets[0].paper_time,
+        "parameter": curve.parameter,
+        "thresholds": [
+            {curve.parameter: float(value)} | _thresholds(onset)
+            for value, onset in zip(curve.values, curve.onsets, strict=True)
+        ],
+    }
+
+
+def _thresholds(onset: Onset) -> dict[str, Any]:
+    hopf = onset.hopf
+    return {
+        "oscillatory_force": onset.oscillatory_force,
+        "oscillatory_error": onset.oscillatory_error,
+        "hopf_force": hopf.force if hopf else None,
+        "hopf_frequency": hopf.frequency if hopf else None,
+        "hopf_growth_slope": hopf.growth_slope if hopf else None,
+        "error": hopf.error if hopf else None,
+        "frequency_error": hopf.frequency_error if hopf else None,
+        "searched_to": onset.searched_to,
+        "reason": None if hopf else str(onset),
+    }
+
+
+def _model(question: Question) -> tuple[Model, dict[str, Any]]:
+    table = question.wanted.stability
+    return build_model(question.wanted), {"method": table.method, "paper_time": table.paper_time}
+
+
+def _title(question: Question, *swept: str) -> str:
+    return question.wanted.load.tell({key.removeprefix("load.") for key in swept})
+
+
+@contextmanager
+def _progress(task: str) -> Iterator[Callable[[int, int], None]]:
+    began = time.monotonic()
+    with meter(task) as show:
+
+        def tell(done: int, total: int) -> None:
+            to_go = (time.monotonic() - began) * (total - done) / done
+            show(done / total, f"{done} of {total}, {duration(to_go)} to go")
+
+        yield tell

@@ -1,0 +1,95 @@
+"""The answers of `undula stability` for people."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from undula.analysis.linear_results import CriticalCurve, Crossing, GrowthCurve, Onset, Spectrum
+from undula.app.run_text import with_error
+
+#: Rates and frequencies are per this time; the printed equation's is shorter by the drag ratio.
+_TIME = {False: "T", True: "T/gamma"}
+
+
+def onset_text(title: str, onset: Onset, at_force: Spectrum) -> str:
+    """Return thresholds, later crossings and the spectrum at the given force, one a line."""
+    lines = list(_onset_lines(onset, at_force))
+    width = max(len(name) for name, _ in lines)
+    head = f"{title}: stability of the straight state, method {onset.method}"
+    return "\n".join([head, *(f"  {name:<{width}}  {said}" for name, said in lines)])
+
+
+def growth_text(title: str, growth: GrowthCurve) -> str:
+    """Return leading rates and frequencies as a table."""
+    places = list(np.ndindex(growth.rates.shape))
+    columns: list[tuple[str, Sequence[str]]] = []
+    if growth.parameter is not None and growth.values is not None:
+        values = growth.values
+        columns = [(growth.parameter, [f"{values[at[0]]:.6g}" for at in places])]
+    columns += [
+        ("force", [f"{growth.forces[at[-1]]:.6g}" for at in places]),
+        ("rate", [f"{growth.rates[at]:.8g}" for at in places]),
+        ("frequency", [f"{growth.frequencies[at]:.8g}" for at in places]),
+        ("error", [f"{growth.errors[at]:.1g}" for at in places]),
+    ]
+    unit = _TIME[growth.paper_time]
+    return f"{title}: leading eigenvalue, rates per {unit}, frequencies in cycles per {unit}\n" + (
+        _table(columns)
+    )
+
+
+def thresholds_text(title: str, curve: CriticalCurve) -> str:
+    """Return thresholds along a parameter as a table."""
+    unit = _TIME[curve.onsets[0].paper_time]
+    columns = [
+        (curve.parameter, [f"{value:.6g}" for value in curve.values]),
+        ("rings from", [_number(force, 10) for force in curve.oscillatory_forces]),
+        ("Hopf force", [_number(force, 10) for force in curve.forces]),
+        ("error", [_number(error, 1) for error in curve.errors]),
+        ("frequency", [_number(frequency, 8) for frequency in curve.frequencies]),
+        ("growth slope", [_number(slope, 6) for slope in curve.growth_slopes]),
+    ]
+    head = f"{title}: thresholds of the straight state in B/L^2, frequencies in cycles per {unit}"
+    return f"{head}\n{_table(columns)}"
+
+
+def _onset_lines(onset: Onset, at_force: Spectrum) -> Iterator[tuple[str, str]]:
+    unit = _TIME[onset.paper_time]
+    if onset.oscillatory_force is not None:
+        yield "rings from", f"{with_error(onset.oscillatory_force, onset.oscillatory_error)} B/L^2"
+    if onset.hopf is None:
+        yield "oscillates", f"never: {onset}"
+    else:
+        yield "oscillates from", f"{with_error(onset.hopf.force, onset.hopf.error)} B/L^2"
+        yield from _crossing_lines(onset.hopf, unit)
+    for crossing in onset.later:
+        what = "joins" if crossing.growth_slope > 0.0 else "calms down"
+        yield (
+            "later",
+            f"at {crossing.force:.8g} B/L^2 a pair of {crossing.frequency:.6g} cycles per {unit}"
+            f" {what}",
+        )
+    for value, frequency in zip(at_force.values, at_force.frequencies, strict=True):
+        if value.imag < 0.0:
+            continue  # told with its partner
+        swings = f", {frequency:.8g} cycles per {unit}" if frequency > 0.0 else ""
+        yield f"at {at_force.force:.6g}", f"rate {value.real:.8g} per {unit}{swings}"
+
+
+def _crossing_lines(crossing: Crossing, unit: str) -> Iterator[tuple[str, str]]:
+    frequency = with_error(crossing.frequency, crossing.frequency_error)
+    yield "frequency", f"{frequency} cycles per {unit}"
+    yield "growth slope", f"{crossing.growth_slope:.8g} per {unit} and B/L^2"
+
+
+def _number(value: float, digits: int) -> str:
+    return f"{value:.{digits}g}" if np.isfinite(value) else "none"
+
+
+def _table(columns: Sequence[tuple[str, Sequence[str]]]) -> str:
+    widths = [max(len(name), *(len(cell) for cell in cells)) for name, cells in columns]
+    rows = [[name for name, _ in columns], *zip(*(cells for _, cells in columns), strict=True)]
+    return "\n".join(
+        "  " + "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True))
+        for row in rows
+    )

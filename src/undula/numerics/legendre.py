@@ -1,0 +1,62 @@
+"""Piecewise polynomials on [0, 1]: Gauss quadrature, and Legendre polynomials with integrals."""
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from undula.arrays import Array, Points
+
+
+def gauss(edges: Points, count: int) -> tuple[Points, Points]:
+    """Return points and weights of the Gauss rule with `count` points on each piece."""
+    x, weight = legendre.leggauss(count)
+    half = 0.5 * np.diff(edges)[:, None]
+    middle = 0.5 * (edges[1:] + edges[:-1])[:, None]
+    return (middle + half * x).ravel(), (half * weight).ravel()
+
+
+def legendre_elements(edges: Points, degree: int, s: Points) -> tuple[Array, Array]:
+    """Return orthonormal Legendre polynomials on elements, and their double integrals from 0.
+
+    Parameters
+    ----------
+    edges : ndarray of shape (k + 1,)
+        Ends of the elements, from 0 to 1.
+    degree : int
+        Highest degree on each.
+    s : ndarray of shape (m,)
+        Points, none of them on an inner edge.
+
+    Returns
+    -------
+    functions, integrals : ndarray of shape (m, k (degree + 1))
+        The polynomials, 0 outside their element, and their integrals taken twice from s = 0.
+    """
+    functions, integrals = [], []
+    for left, right in pairwise(edges):
+        h = right - left
+        x = 2.0 * (s - left) / h - 1.0
+        inside, beyond = (s > left) & (s < right), s >= right
+        scale = np.sqrt((2.0 * np.arange(degree + 1) + 1.0) / h)
+        p, once, twice = _with_integrals(np.where(inside, x, 1.0), degree)
+        functions.append(np.where(inside[:, None], scale * p, 0.0))
+        after = twice * h**2 / 4.0 + np.where(beyond, s - right, 0.0)[:, None] * once * h / 2.0
+        integrals.append(np.where((inside | beyond)[:, None], scale * after, 0.0))
+    return np.hstack(functions), np.hstack(integrals)
+
+
+def _with_integrals(x: Points, degree: int) -> tuple[Array, Array, Array]:
+    """Return P_0 .. P_degree at x with their first and second integrals from -1.
+
+    From (2 k + 1) P_k = (P_{k+1} - P_{k-1})', whose bracket vanishes at -1 for k > 0.
+    """
+    odd = 2.0 * np.arange(degree + 2) + 1.0
+    p = np.asarray(legendre.legvander(x, degree + 2), dtype=np.float64)
+    once = np.empty((x.size, degree + 2))
+    once[:, 0] = x + 1.0
+    once[:, 1:] = (p[:, 2:] - p[:, :-2]) / odd[1:]
+    twice = np.empty((x.size, degree + 1))
+    twice[:, 0] = 0.5 * (x + 1.0) ** 2
+    twice[:, 1:] = (once[:, 2:] - once[:, :-2]) / odd[1:-1]
+    return p[:, : degree + 1], once[:, : degree + 1], twice

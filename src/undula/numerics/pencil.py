@@ -1,0 +1,91 @@
+"""Matrix pencils that depend on a parameter, and their eigenvalues.
+
+    K(p) c = -sigma M c
+
+with a regular stiffness K and a parameter p. Eigenvalues are computed as 1/mu from the operator
+-K^-1 M: the slow ones, which decide on stability, are then those of largest modulus, and accurate
+even where M is compact and most of its own spectrum is lost in round-off.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import scipy.linalg as sl
+
+from undula.arrays import Array, ComplexArray
+
+
+class Pencil(Protocol):
+    """A real pencil K(p) + sigma M; all matrices are of shape (n, n)."""
+
+    @property
+    def mass(self) -> Array:
+        """The matrix M."""
+
+    def stiffness(self, p: float) -> Array:
+        """Return K(p)."""
+
+    def slope(self, p: float) -> Array:
+        """Return dK/dp."""
+
+
+@dataclass(frozen=True)
+class LinearPencil:
+    """A pencil whose stiffness K(p) = base + p change is linear in the parameter."""
+
+    base: Array
+    change: Array
+    mass: Array
+
+    def stiffness(self, p: float) -> Array:
+        """Return K(p)."""
+        return self.base + p * self.change
+
+    def slope(self, p: float) -> Array:  # noqa: ARG002
+        """Return dK/dp, which is constant."""
+        return self.change
+
+
+def eigenvalues(stiffness: Array, mass: Array) -> ComplexArray:
+    """Return all resolved sigma of K c = -sigma M c, by falling real part."""
+    inverse = np.asarray(np.linalg.eigvals(-np.linalg.solve(stiffness, mass)), dtype=complex)
+    values = 1.0 / inverse[_resolved(inverse)]
+    return np.asarray(values[_by_rate(values)])
+
+
+def eigenpairs(stiffness: Array, mass: Array) -> tuple[ComplexArray, ComplexArray]:
+    """Return all resolved sigma by falling real part, and their vectors c as columns."""
+    inverse, vectors = np.linalg.eig(-np.linalg.solve(stiffness, mass))
+    inverse, vectors = np.asarray(inverse, dtype=complex), np.asarray(vectors, dtype=complex)
+    kept = _resolved(inverse)
+    values, vectors = 1.0 / inverse[kept], vectors[:, kept]
+    order = _by_rate(values)
+    return values[order], vectors[:, order]
+
+
+def reduced(pencil: Pencil, size: int) -> LinearPencil:
+    """Return the pencil on its `size` slowest eigenvectors at p = 0, linear in p.
+
+    A stiffness that is not linear in p is replaced by its tangent at p = 0.
+    """
+    base, change, mass = pencil.stiffness(0.0), pencil.slope(0.0), pencil.mass
+    right, left = _slowest(base, mass, size), _slowest(base.T, mass.T, size)
+    return LinearPencil(left.T @ base @ right, left.T @ change @ right, left.T @ mass @ right)
+
+
+def _slowest(stiffness: Array, mass: Array, size: int) -> Array:
+    """Return a real orthonormal basis of the slowest eigenvectors, shape (n, size)."""
+    values, vectors = eigenpairs(stiffness, mass)
+    slow = vectors[:, np.argsort(np.abs(values))[:size]]
+    return np.asarray(sl.orth(np.hstack([slow.real, slow.imag]))[:, :size])
+
+
+def _resolved(inverse: ComplexArray) -> Any:
+    floor = inverse.size * np.finfo(float).eps * np.abs(inverse).max()
+    return np.abs(inverse) > floor
+
+
+def _by_rate(values: ComplexArray) -> Any:
+    """Return the order by falling real part; of a pair the one above the real axis first."""
+    return np.lexsort((-values.imag, -values.real))
