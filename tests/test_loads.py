@@ -198,7 +198,7 @@ def test_breaks_lie_inside_the_filament_and_increase(load: Load) -> None:
 
 
 def unresolved(load: Load, skip: int = 0) -> float:
-    """Return how far degree 20 misses the force below, at worst, on all pieces but the first few, if any, to skip."""
+    """Return how far degree 20 misses the force below, at worst, after the first `skip` pieces."""
     nodes, between = chebyshev.chebpts1(21), np.cos(np.linspace(0.0, np.pi, 200))
     missed = 0.0
     for a, b in list(pairwise((0.0, *load.breaks, 1.0)))[skip:]:

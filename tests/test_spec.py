@@ -1,6 +1,7 @@
-"""Claims on reading the input of a run: defaults, resolution, files and overrides."""
+"""Claims on reading the input of a command: defaults, resolution, files and overrides."""
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,13 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from refusal import complaint
-from undula.studies.spec import RunInput, parse_input, read_input
+from undula.studies.spec import (
+    RunInput,
+    StabilityInput,
+    parse_input,
+    read_input,
+    read_stability_input,
+)
 
 DEFAULTS = {
     "model": {
@@ -190,6 +197,98 @@ def test_a_table_is_read_from_a_file(tmp_path: Path) -> None:
         "s": [0.0, 1.0],
         "density": [1.0, 0.0],
     }
+
+
+#: Tables of every command.
+SHARED = """
+[model]
+segments = 20
+[load]
+force = 60
+[start]
+seed = 7
+[time]
+until = 2
+[stability]
+method = "modes"
+"""
+
+
+def test_stability_has_defaults_and_needs_neither_start_nor_time() -> None:
+    assert read_stability_input().dump() == {
+        "model": DEFAULTS["model"],
+        "load": DEFAULTS["load"],
+        # Which method is the default depends on the model.
+        "stability": {"paper_time": False},
+    }
+
+
+def test_every_method_of_stability_is_known() -> None:
+    for method in ("spectral", "modes", "discrete"):
+        wanted = read_stability_input(None, [f"stability.method={method}"])
+        assert wanted.stability.method == method
+        assert wanted.dump()["stability"] == {"method": method, "paper_time": False}
+
+
+def test_a_file_may_hold_the_tables_of_several_commands(tmp_path: Path) -> None:
+    path = written(tmp_path, SHARED)
+    run, question = read_input(path), read_stability_input(path)
+    assert (run.model, run.load) == (question.model, question.load)
+    assert (run.start.seed, run.time.until) == (7, 2.0)
+    assert question.stability.method == "modes"
+    # Each is what it would be had the file held its own tables only.
+    assert run == RunInput.model_validate(run.dump())
+    assert question == StabilityInput.model_validate(question.dump())
+    assert not {"start", "time"} & question.dump().keys()
+    assert "stability" not in run.dump()
+
+
+@pytest.mark.parametrize("override", ["stability.method=modes", "stability.paper_time=true"])
+def test_a_run_refuses_changes_of_the_table_of_stability(override: str, tmp_path: Path) -> None:
+    path = written(tmp_path, SHARED)
+    for file in (None, path):
+        sentence = complaint(partial(read_input, file, [override]))
+        assert sentence.startswith("--set stability.")
+        assert sentence.endswith("it reads [model], [load], [start], [time]")
+
+
+@pytest.mark.parametrize("override", ["start.seed=3", "time.until=1"])
+def test_stability_refuses_changes_of_the_tables_of_a_run(override: str, tmp_path: Path) -> None:
+    path = written(tmp_path, SHARED)
+    for file in (None, path):
+        sentence = complaint(partial(read_stability_input, file, [override]))
+        assert sentence.startswith(f"--set {override.split('.')[0]}.")
+        assert sentence.endswith("it reads [model], [load], [stability]")
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            '[stability]\nmethod = "best"',
+            "stability.method = 'best' is not known;"
+            " stability.method takes 'spectral', 'modes' or 'discrete'",
+        ),
+        (
+            "[stability]\npaper_time = 1",
+            "stability.paper_time = 1 is a whole number; stability.paper_time takes true or false",
+        ),
+        (
+            "[stability]\npapertime = true",
+            "stability.papertime is not a known key; did you mean stability.paper_time?",
+        ),
+        ("[stabilty]\n", "[stabilty] is not a known table; did you mean [stability]?"),
+        ("[time]\nuntil = 0", "time.until = 0 is out of range; time.until takes"),
+        ("[start]\nshape = 'state'", "start.shape = 'state' needs start.file"),
+    ],
+)
+def test_a_mistake_in_a_file_is_told_whichever_command_reads_it(
+    text: str, sentence: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path, text)
+    told = {complaint(lambda: read_input(path)), complaint(lambda: read_stability_input(path))}
+    (only,) = told
+    assert only.startswith(sentence)
 
 
 def test_a_file_name_in_an_override_needs_no_quotes() -> None:

@@ -176,7 +176,11 @@ class _LinksPencil:
         return self.model.linearised()[1]
 
     def stiffness(self, p: float) -> Array:
-        return self.model.with_(force=p).linearised()[0]
+        model = self.model.with_(force=p)
+        axial = model.straight()[model.dimension - 1 :: model.dimension]
+        if np.diff(axial, prepend=0.0).min() <= 0.0:
+            return np.full_like(self.mass, np.nan)  # pushed beyond their length
+        return model.linearised()[0]
 
     def slope(self, p: float) -> Array:
         # Rigid links are linear in the force and any step is exact; for extensible ones, whose

@@ -1,11 +1,13 @@
 """The search for the forces at which the straight state starts to ring, and to oscillate.
 
 All candidates come at once from a small pencil (`undula.numerics.bialternate`), are refined on the
-whole one, and checked: at the first crossing no eigenvalue may lie beyond the axis. Should a check
-fail, the sign change of the leading rate is bracketed and bisected instead.
+whole one, and checked: at each crossing as many eigenvalues lie beyond the axis as earlier ones
+have brought there. Should the first fail, or move with the resolution, the sign change of the
+leading rate is bracketed and bisected instead.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import takewhile
 
 import numpy as np
 from scipy.optimize import brentq
@@ -22,8 +24,11 @@ _SIZES = (10, 16, 24)
 _SIZE_TO_MEET = 8
 # A better resolution is tried unless thresholds are settled to this relative error.
 _SETTLED = 1e-12
-# A rate this small beside the frequency counts as 0; a coalescence splits by the root of round-off.
+# A rate this small beside the frequency, or the slowest decay without a force, counts as 0; a
+# coalescence splits by the root of round-off.
 _ON_AXIS, _TOGETHER = 1e-7, 1e-4
+# A threshold or eigenvalue of an approximation is believed if it is right to this share.
+_BELIEVED = 0.01
 # Forces beyond this are searched only if a candidate lies there.
 _FARTHEST = 2.0**14
 
@@ -37,14 +42,18 @@ def find_onset(linearisation: Linearisation, later: int) -> Onset:
     later : int
         How many crossings after the first are wanted.
     """
-    pairs, searched_to = _first_pairs(linearisation, 1 + later)
-    ringing = _ringing_force(linearisation, pairs[0].p if pairs else searched_to)
-    while True:
-        onset = _measured(linearisation, pairs, ringing, searched_to)
-        finer = linearisation.finer()
-        if finer is None or _settled(onset):
+    pairs = _first_pairs(linearisation, 1 + later)
+    if pairs:
+        onset = _resolved(linearisation, pairs, pairs[-1].p)
+        if onset.hopf is not None:
             return onset
-        linearisation = finer
+    return _resolved(*_bracketed(linearisation))
+
+
+def first_pair(linearisation: Linearisation) -> CriticalPair | None:
+    """Return the pair that crosses the axis first, None if none is found."""
+    pairs = _first_pairs(linearisation, 1) or _bracketed(linearisation)[1]
+    return pairs[0] if pairs else None
 
 
 def leading(pencil: Pencil, force: float) -> complex:
@@ -73,18 +82,18 @@ class _Ringing:
         return float(at), round_off
 
 
-def _first_pairs(linearisation: Linearisation, count: int) -> tuple[list[CriticalPair], float]:
-    """Return the first crossings, and the force up to which none was missed."""
-    pencil = linearisation.pencil
+def _first_pairs(linearisation: Linearisation, count: int) -> list[CriticalPair]:
+    """Return the first crossings, at most `count`; none if the first was not found for certain."""
     best: list[CriticalPair] = []
     # Later crossings want more of the small pencil than the first one does.
     for size in _SIZES if count == 1 else _SIZES[1:]:
-        found = [refine_crossing(pencil, *guess) for guess in crossings(linearisation.coarse(size))]
+        guesses = crossings(linearisation.coarse(size))
+        found = [refine_crossing(linearisation.pencil, *guess) for guess in guesses]
         pairs = _distinct([pair for pair in found if pair is not None])
-        best = max(best, _unbroken(pencil, pairs[:count]), key=len)
+        best = max(best, _unbroken(linearisation.pencil, pairs[:count]), key=len)
         if len(best) == count:
             break
-    return (best, best[-1].p) if best else _bracketed(linearisation)
+    return best
 
 
 def _distinct(pairs: list[CriticalPair]) -> list[CriticalPair]:
@@ -105,36 +114,46 @@ def _unbroken(pencil: Pencil, pairs: list[CriticalPair]) -> list[CriticalPair]:
     return pairs
 
 
-def _bracketed(linearisation: Linearisation) -> tuple[list[CriticalPair], float]:
-    """Return the crossing below the first of 1, 2, 4, ... at which a mode grows."""
+def _bracketed(linearisation: Linearisation) -> tuple[Linearisation, list[CriticalPair], float]:
+    """Return the crossing below the first of 1, 2, 4, ... at which a mode grows, if there is one.
+
+    With it come the linearisation that it was found on, and the force up to which was searched.
+    """
     stable, force = 0.0, 1.0
-    while force <= _FARTHEST:
+    while force <= _FARTHEST and np.isfinite(linearisation.pencil.stiffness(force)).all():
         trusted = _trusted(linearisation, force)
         if trusted is None:
             break
         linearisation = trusted
-        if leading(linearisation.pencil, force).real > 0.0:
+        if _growth(linearisation.pencil, force) > 0.0:
             pairs = _bisected(linearisation.pencil, stable, force)
-            return pairs, pairs[-1].p if pairs else stable
+            return linearisation, pairs, pairs[-1].p if pairs else stable
         stable, force = force, 2.0 * force
-    return [], stable
+    return linearisation, [], stable
 
 
 def _trusted(linearisation: Linearisation | None, force: float) -> Linearisation | None:
-    """Return a linearisation whose leading eigenvalue is right to a hundredth, None if too fine."""
+    """Return a linearisation whose leading eigenvalue is right, None if it would be too fine."""
     while linearisation is not None:
         compared = linearisation.companion()
-        if compared is None:
+        # Links are the model itself, not an approximation of it.
+        if compared is None or linearisation.method == "discrete":
             return linearisation
         one, two = (leading(each.pencil, force) for each in (linearisation, compared[0]))
-        if compared[1] * abs(one - two) < 0.01 * abs(one):
+        slow = max(abs(one), abs(leading(linearisation.pencil, 0.0)))
+        if compared[1] * abs(one - two) < _BELIEVED * slow:
             return linearisation
         linearisation = linearisation.finer()
     return None
 
 
+def _growth(pencil: Pencil, force: float) -> float:
+    """Return the leading rate, less what round-off may make of one that is nearly 0."""
+    return leading(pencil, force).real - _ON_AXIS * abs(leading(pencil, 0.0))
+
+
 def _bisected(pencil: Pencil, stable: float, unstable: float) -> list[CriticalPair]:
-    force = brentq(lambda p: leading(pencil, p).real, stable, unstable)
+    force = brentq(lambda p: _growth(pencil, p), stable, unstable)
     pair = refine_crossing(pencil, force, leading(pencil, force).imag)
     return [pair] if pair else []
 
@@ -181,6 +200,34 @@ def _first_rate(values: ComplexArray) -> float:
     return float(values[0].real) if values.size else -np.inf
 
 
+def _resolved(linearisation: Linearisation, pairs: list[CriticalPair], searched_to: float) -> Onset:
+    """Return the onset with these crossings, on a finer linearisation where that is worth it."""
+    ringing = _ringing_force(linearisation, pairs[0].p if pairs else searched_to)
+    onset = _measured(linearisation, pairs, ringing, searched_to)
+    while not _settled(onset) and (finer := linearisation.finer()) is not None:
+        refined = [refine_crossing(finer.pencil, pair.p, pair.omega) for pair in pairs]
+        pairs = [pair for pair in takewhile(bool, refined) if pair is not None]
+        if not pairs:
+            break
+        linearisation = finer
+        onset = _measured(linearisation, pairs, ringing, searched_to)
+    return onset if linearisation.method == "discrete" else _believed(onset)
+
+
+def _believed(onset: Onset) -> Onset:
+    """Return an onset without crossings that the approximation has and the filament may not."""
+    known = list(takewhile(_is_believed, _found(onset)))
+    if known == _found(onset):
+        return onset
+    hopf, searched_to = (known[0], known[-1].force) if known else (None, 0.0)
+    return replace(onset, hopf=hopf, later=tuple(known[1:]), searched_to=searched_to)
+
+
+def _is_believed(crossing: Crossing) -> bool:
+    by_force, by_frequency = crossing.error / crossing.force, crossing.frequency_error
+    return max(by_force, by_frequency / crossing.frequency) < _BELIEVED
+
+
 def _measured(
     linearisation: Linearisation,
     pairs: list[CriticalPair],
@@ -190,37 +237,40 @@ def _measured(
     """Return the onset on a linearisation, with errors from its companion."""
     other, factor = linearisation.companion() or (None, 0.0)
     compared = other.pencil if other else None
-    measured = [_crossing(linearisation.pencil, compared, factor, pair) for pair in pairs]
-    resolved = [crossing for crossing in measured if crossing is not None]
+    measured = [_crossing(compared, factor, pair) for pair in pairs]
     force, error = _ringing_measured(linearisation.pencil, compared, factor, ringing)
     return Onset(
-        hopf=resolved[0] if resolved else None,
+        hopf=measured[0] if measured else None,
         oscillatory_force=force,
         oscillatory_error=error,
-        later=tuple(resolved[1:]),
-        searched_to=searched_to,
+        later=tuple(measured[1:]),
+        searched_to=measured[-1].force if measured else searched_to,
         method=linearisation.method,
     )
 
 
-def _crossing(
-    pencil: Pencil, compared: Pencil | None, factor: float, guess: CriticalPair
-) -> Crossing | None:
-    pair = refine_crossing(pencil, guess.p, guess.omega)
-    other = pair and compared and refine_crossing(compared, pair.p, pair.omega)
-    if pair is None or (compared is not None and other is None):
-        return None
-    force_error = factor * abs(pair.p - other.p) + pair.round_off if other else pair.round_off
-    turns = 2.0 * np.pi
-    swing = factor * abs(pair.omega - other.omega) if other else 0.0
-    round_off = pair.round_off * pair.omega / pair.p
+def _crossing(compared: Pencil | None, factor: float, pair: CriticalPair) -> Crossing:
+    by_force, by_omega = (0.0, 0.0) if compared is None else _differences(compared, pair)
+    turns, round_off = 2.0 * np.pi, pair.round_off / pair.p
     return Crossing(
         force=pair.p,
-        error=force_error,
+        error=float(factor * by_force + round_off * pair.p),
         frequency=pair.omega / turns,
-        frequency_error=(swing + round_off) / turns,
+        frequency_error=float(factor * by_omega + round_off * pair.omega) / turns,
         growth_slope=pair.slope,
     )
+
+
+def _differences(compared: Pencil, pair: CriticalPair) -> tuple[float, float]:
+    """Return by how much parameter and frequency of a crossing differ on another pencil."""
+    values = eigenvalues(compared.stiffness(pair.p), compared.mass)
+    nearest = values[np.argmin(np.abs(values - 1j * pair.omega))]
+    p, omega = pair.p - nearest.real / pair.slope, float(nearest.imag)
+    other = refine_crossing(compared, p, omega) if p > 0.0 else None
+    if other is None:
+        away = abs(nearest - 1j * pair.omega)
+        return away / abs(pair.slope), away
+    return abs(other.p - pair.p), abs(other.omega - pair.omega)
 
 
 def _ringing_measured(
@@ -240,11 +290,11 @@ def _ringing_measured(
 
 
 def _settled(onset: Onset) -> bool:
-    settled = all(
-        crossing.error <= _SETTLED * crossing.force
-        for crossing in (onset.hopf, *onset.later)
-        if crossing is not None
-    )
-    if onset.oscillatory_force is None or onset.oscillatory_error is None:
-        return settled
-    return settled and onset.oscillatory_error <= _SETTLED * onset.oscillatory_force
+    errors = [crossing.error / crossing.force for crossing in _found(onset)]
+    if onset.oscillatory_force and onset.oscillatory_error:
+        errors.append(onset.oscillatory_error / onset.oscillatory_force)
+    return max(errors, default=0.0) <= _SETTLED
+
+
+def _found(onset: Onset) -> list[Crossing]:
+    return [] if onset.hopf is None else [onset.hopf, *onset.later]

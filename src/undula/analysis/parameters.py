@@ -25,17 +25,49 @@ def changed(model: Model, parameter: str, value: float) -> Model:
     known = _numbers(model)
     if parameter not in known:
         raise InputError(f"{parameter} is no number of this model; take {' or '.join(known)}")
-    if not isinstance(known[parameter], int):
+    if known[parameter] not in (int, "int"):
         return model.with_(**{parameter.split(".")[1]: float(value)})
     if value != round(value):
         raise InputError(f"{parameter} = {value!r} has to be a whole number")
     return model.with_(**{parameter.split(".")[1]: int(value)})
 
 
-def _numbers(model: Any) -> dict[str, float]:
-    """Return the numbers of a model and of its load by name."""
+def value_of(model: Model, parameter: str) -> float:
+    """Return the value of a parameter that a state can be followed along.
+
+    Raises
+    ------
+    InputError
+        There is no such parameter, or it is a whole number, which has nothing in between.
+    """
+    known = [name for name, kind in _numbers(model).items() if kind not in (int, "int")]
+    if parameter not in known:
+        raise InputError(f"nothing can be followed along {parameter}; take {' or '.join(known)}")
+    place, name = parameter.split(".")
+    return float(getattr(model.load if place == "load" else model, name))
+
+
+def neighbours(model: Model, parameter: str, value: float) -> tuple[Model, Model, float]:
+    """Return the models a little below and above a value, and the difference of their values.
+
+    They serve to differentiate by the parameter; at an end of its range one of them lies on it.
+    """
+    # A hundred-thousandth: differences of smooth functions are then good to ten digits.
+    step = 1e-5 * max(1.0, abs(value))
+    sides = []
+    for side in (value - step, value + step):
+        try:
+            sides.append((changed(model, parameter, side), side))
+        except InputError:
+            sides.append((changed(model, parameter, value), value))
+    (below, low), (above, high) = sides
+    return below, above, high - low
+
+
+def _numbers(model: Any) -> dict[str, Any]:
+    """Return the declared types of a model's numbers and of its load's, by name."""
     return {
-        f"{place}.{field.name}": getattr(owner, field.name)
+        f"{place}.{field.name}": field.type
         for place, owner in (("load", model.load), ("model", model))
         for field in dataclasses.fields(owner)
         if field.init and is_number(getattr(owner, field.name))

@@ -148,10 +148,10 @@ def growth_curve(
     if (parameter is None) != (values is None):
         raise InputError("a parameter and its values go together; give both or none")
     forces = np.array([_force(force) for force in _some("forces", forces)])
-    given = None if values is None else np.asarray(_some("values", values), dtype=float)
+    given = None if values is None else _numbers(values)
     models = [model]
     if parameter is not None and given is not None:
-        models = [changed(model, parameter, value) for value in given]
+        models = _models(model, parameter, given)
     rows = []
     for done, each in enumerate(models, start=1):
         rows.append(_leading(each, forces, method) / _slowness(each, paper_time))
@@ -197,10 +197,8 @@ def critical_curve(
     InputError
         An argument is out of its range, or the model does not know the method or the parameter.
     """
-    if parameter == "load.force":
-        raise InputError("thresholds are values of load.force; take another parameter for a curve")
-    given = np.asarray(_some("values", values), dtype=float)
-    models = [changed(model, parameter, value) for value in given]
+    given = _numbers(values)
+    models = _models(model, parameter, given)
     onsets = []
     for done, each in enumerate(models, start=1):
         onsets.append(critical_force(each, method=method, later=0, paper_time=paper_time))
@@ -276,6 +274,20 @@ def _some(name: str, values: Sequence[float] | Array) -> Sequence[float] | Array
     if np.ndim(values) != 1 or len(values) == 0:
         raise InputError(f"{name} = {values!r} has to be a list of numbers, one at least")
     return values
+
+
+def _numbers(values: Sequence[float] | Array) -> Array:
+    for value in _some("values", values):
+        if not is_number(value):
+            raise InputError(f"values: {value!r} has to be a finite number")
+    return np.asarray(values, dtype=float)
+
+
+def _models(model: Model, parameter: str, values: Array) -> list[Model]:
+    """Return the model at each value of a parameter."""
+    if parameter == "load.force":
+        raise InputError("the curve itself is about load.force; take another parameter for it")
+    return [changed(model, parameter, value) for value in values.tolist()]
 
 
 def _force(force: float) -> float:

@@ -4,6 +4,7 @@ import json
 import math
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 #: Exit status of every command.
@@ -12,6 +13,14 @@ DONE, BAD_INPUT, STOPPED_EARLY = 0, 2, 3
 INTERRUPTED = 130
 
 Answer = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Told:
+    """An answer in plain JSON types, and the same for people."""
+
+    answer: dict[str, Any]
+    text: str
 
 
 def reply(answer: Answer, text: str, *, as_json: bool) -> None:

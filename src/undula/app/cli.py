@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from undula.app.options import Budget, Changes, Input, Json, NoMovie, Overwrite, Result
+from undula.app.questions import find, follow, stability, threshold
 from undula.errors import InputError
 
 app = typer.Typer(
@@ -15,22 +17,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-Result = Annotated[Path, typer.Argument(metavar="RESULT.nc", help="A file that undula run wrote.")]
-Input = Annotated[
-    Path | None, typer.Argument(metavar="[FILE.toml]", help="Input; without it, the defaults.")
-]
-Changes = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a key, as in load.force=80."),
-]
-Json = Annotated[bool, typer.Option("--json", help="Answer with exactly one JSON object.")]
-NoMovie = Annotated[bool, typer.Option("--no-movie", help="Make no movie.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what exists.")]
-Budget = Annotated[
-    float | None,
-    typer.Option(metavar="SECONDS", help="Stop after so long, with what there is (exit status 3)."),
-]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,6 +63,10 @@ def undula(
     ] = False,
 ) -> None:
     """Elastic microfilaments in viscous fluid under follower forces: run, judge and draw them."""
+
+
+for _command in (stability, find, follow, threshold):
+    app.command()(_command)
 
 
 @app.command()
@@ -170,55 +160,6 @@ def movie(
     path = movie_path(result, out)
     draw_movie(load_result(result), path, overwrite=overwrite or out is None)
     reply({"status": "done", "movie": str(path)}, str(path), as_json=as_json)
-    return DONE
-
-
-@app.command()
-def stability(
-    file: Input = None,
-    changes: Changes = None,
-    forces: Annotated[
-        str | None,
-        typer.Option(metavar="RANGE", help="Leading eigenvalue at these forces, as 0:60:121."),
-    ] = None,
-    along: Annotated[
-        str | None,
-        typer.Option(metavar="KEY=RANGE", help="Along a parameter, as load.slope=-1:1:41."),
-    ] = None,
-    method: Annotated[
-        str | None,
-        typer.Option(help="spectral, modes or discrete; short for --set stability.method=."),
-    ] = None,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Figure: .png, .pdf or .svg.")
-    ] = None,
-    overwrite: Overwrite = False,
-    as_json: Json = False,
-) -> int:
-    """Tell when the straight filament begins to ring and to oscillate, and how fast.
-
-    With --forces the leading eigenvalue at each force, with --along thresholds along a parameter,
-    with both a map.
-    """
-    from undula.app.answers import DONE, reply
-    from undula.app.stability import Question, ask
-    from undula.studies.ranges import parse_axis, parse_values
-    from undula.studies.spec import read_stability_input
-
-    given = [*(changes or ()), *([f"stability.method={method}"] if method is not None else [])]
-    question = Question(
-        wanted=read_stability_input(file, given),
-        forces=None if forces is None else parse_values("--forces", forces),
-        along=None if along is None else parse_axis("--along", along),
-    )
-    if plot is not None:
-        from undula.app.drawing import check_figure_name
-        from undula.studies.whole_file import claim_output
-
-        check_figure_name("--plot", plot)
-        claim_output(plot, overwrite=overwrite)
-    told = ask(question, plot)
-    reply(told.answer, told.text, as_json=as_json)
     return DONE
 
 

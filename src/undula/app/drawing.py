@@ -1,15 +1,28 @@
 """Figures and movies of stored runs, on disk."""
 
+from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
+from undula.analysis.linear_results import GrowthCurve
+from undula.analysis.states import Branch
+from undula.analysis.straight_branch import StraightBranch
+from undula.analysis.thresholds import Threshold
 from undula.app.meter import meter
 from undula.errors import InputError
+from undula.studies.store import load_result
 from undula.studies.whole_file import claim_output, write_whole
-from undula.views import movie, portrait
+from undula.views import (
+    bifurcation_diagram,
+    growth_figure,
+    movie,
+    portrait,
+    threshold_curves,
+)
 
 FORMATS = (".png", ".pdf", ".svg")
 _DOTS_PER_INCH = 150
@@ -80,6 +93,61 @@ def save_figure(figure: Any, path: Path, *, overwrite: bool) -> None:
     image = BytesIO()
     figure.savefig(image, format=path.suffix[1:].lower(), dpi=_DOTS_PER_INCH)
     write_whole(path, image.getvalue(), overwrite=overwrite)
+
+
+def draw_straight(branch: StraightBranch, path: Path, *, title: str) -> None:
+    """Draw growth rate and frequency of the straight state against the force into a file.
+
+    Raises
+    ------
+    InputError
+        It was followed along something else, or the file cannot be written.
+    """
+    if branch.parameter != "load.force":
+        raise InputError(
+            "the straight state is drawn along load.force only; for thresholds along"
+            f" {branch.parameter} use undula stability --along"
+        )
+    growth = GrowthCurve(
+        branch.values, branch.rates, branch.frequencies, np.zeros_like(branch.rates), "spectral"
+    )
+    save_figure(growth_figure(growth, title=title), path, overwrite=True)
+
+
+def draw_branch(branch: Branch[Any], runs: Sequence[Path], path: Path, *, title: str) -> None:
+    """Draw a branch of states, with stored runs as dots, into a file.
+
+    Raises
+    ------
+    InputError
+        A run cannot be read, or the file cannot be written.
+    """
+    stored = [load_result(run) for run in runs]
+    save_figure(bifurcation_diagram([branch], title=title, runs=stored), path, overwrite=True)
+
+
+def draw_thresholds(
+    name: str,
+    along: tuple[str, Sequence[float]],
+    found: Sequence[Threshold],
+    path: Path,
+    *,
+    title: str,
+) -> None:
+    """Draw a threshold along a parameter into a file.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    values = np.asarray(along[1], dtype=float)
+    forces, errors = (
+        np.array([np.nan if getattr(one, what) is None else getattr(one, what) for one in found])
+        for what in ("value", "error")
+    )
+    figure = threshold_curves([(name, values, forces, errors)], parameter=along[0], title=title)
+    save_figure(figure, path, overwrite=True)
 
 
 def draw_movie(stored: xr.Dataset, path: Path, *, overwrite: bool) -> None:

@@ -3,9 +3,7 @@
 Plotting is imported only if there is something to plot: the answer itself takes milliseconds.
 """
 
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,23 +13,16 @@ import numpy as np
 from undula.analysis.linear_results import CriticalCurve, GrowthCurve, Onset, Spectrum
 from undula.analysis.stability import critical_curve, critical_force, growth_curve, spectrum
 from undula.app import stability_text as text
-from undula.app.meter import meter
-from undula.app.pace import duration
-from undula.arrays import Array
+from undula.app.answers import Told
+from undula.app.progress import counted
 from undula.models.model import Model
 from undula.studies.build import build_model
 from undula.studies.spec import StabilityInput
 
+Values = tuple[float, ...]
+
 # The figure of a single case shows this many forces, so far beyond the threshold and the force.
 _SHOWN, _BEYOND = 241, 1.3
-
-
-@dataclass(frozen=True)
-class Told:
-    """An answer in plain JSON types, and the same for people."""
-
-    answer: dict[str, Any]
-    text: str
 
 
 @dataclass(frozen=True)
@@ -41,15 +32,15 @@ class Question:
     Attributes
     ----------
     wanted : StabilityInput
-    forces : ndarray of shape (m,) or None
+    forces : tuple of float or None
         Forces at which the leading eigenvalue is asked for.
-    along : (str, ndarray of shape (k,)) or None
+    along : (str, tuple of float) or None
         A parameter with its values.
     """
 
     wanted: StabilityInput
-    forces: Array | None
-    along: tuple[str, Array] | None
+    forces: Values | None
+    along: tuple[str, Values] | None
 
 
 def ask(question: Question, figure: Path | None) -> Told:
@@ -70,7 +61,7 @@ def ask(question: Question, figure: Path | None) -> Told:
         from undula.app.drawing import save_figure
 
         save_figure(draw(), figure, overwrite=True)
-    head = {"status": "done", "load": question.wanted.load_text}
+    head = {"status": "done", "load": _title(question)}
     shown = {"figure": str(figure) if figure else None}
     lines = f"{answered.text}\n  figure  {figure}" if figure else answered.text
     return Told(head | answered.answer | shown, lines)
@@ -79,7 +70,7 @@ def ask(question: Question, figure: Path | None) -> Told:
 def _ask_onset(question: Question) -> tuple[Told, Callable[[], Any]]:
     model, options = _model(question)
     onset, at_force = critical_force(model, **options), spectrum(model, **options)
-    title = question.wanted.load_text
+    title = _title(question)
 
     def draw() -> Any:
         from undula.views import stability_portrait
@@ -91,14 +82,14 @@ def _ask_onset(question: Question) -> tuple[Told, Callable[[], Any]]:
     return Told(onset_answer(onset, at_force), text.onset_text(title, onset, at_force)), draw
 
 
-def _ask_growth(question: Question, forces: Array) -> tuple[Told, Callable[[], Any]]:
+def _ask_growth(question: Question, forces: Values) -> tuple[Told, Callable[[], Any]]:
     model, options = _model(question)
     name, values = question.along or (None, None)
-    with _progress("growth rates") as progress:
+    with counted("growth rates") as progress:
         growth = growth_curve(
             model, forces, parameter=name, values=values, progress=progress, **options
         )
-    title = _title(question, "load.force", name or "")
+    title = _title(question)
 
     def draw() -> Any:
         from undula.views import growth_figure
@@ -108,11 +99,13 @@ def _ask_growth(question: Question, forces: Array) -> tuple[Told, Callable[[], A
     return Told(growth_answer(growth), text.growth_text(title, growth)), draw
 
 
-def _ask_thresholds(question: Question, name: str, values: Array) -> tuple[Told, Callable[[], Any]]:
+def _ask_thresholds(
+    question: Question, name: str, values: Values
+) -> tuple[Told, Callable[[], Any]]:
     model, options = _model(question)
-    with _progress("thresholds") as progress:
+    with counted("thresholds") as progress:
         curve = critical_curve(model, name, values, progress=progress, **options)
-    title = _title(question, "load.force", name)
+    title = _title(question)
 
     def draw() -> Any:
         from undula.views import threshold_figure
@@ -130,6 +123,7 @@ def onset_answer(onset: Onset, at_force: Spectrum) -> dict[str, Any]:
             "frequency": crossing.frequency,
             "growth_slope": crossing.growth_slope,
             "error": crossing.error,
+            "frequency_error": crossing.frequency_error,
         }
         for crossing in onset.later
     ]
@@ -197,17 +191,8 @@ def _model(question: Question) -> tuple[Model, dict[str, Any]]:
     return build_model(question.wanted), {"method": table.method, "paper_time": table.paper_time}
 
 
-def _title(question: Question, *swept: str) -> str:
+def _title(question: Question) -> str:
+    """Return the load in words, without what the answer sweeps over."""
+    along = [question.along[0]] if question.along else []
+    swept = ["load.force", *along] if question.forces or along else []
     return question.wanted.load.tell({key.removeprefix("load.") for key in swept})
-
-
-@contextmanager
-def _progress(task: str) -> Iterator[Callable[[int, int], None]]:
-    began = time.monotonic()
-    with meter(task) as show:
-
-        def tell(done: int, total: int) -> None:
-            to_go = (time.monotonic() - began) * (total - done) / done
-            show(done / total, f"{done} of {total}, {duration(to_go)} to go")
-
-        yield tell

@@ -8,7 +8,7 @@ from undula.analysis.linear_results import CriticalCurve, Crossing, GrowthCurve,
 from undula.app.run_text import with_error
 
 #: Rates and frequencies are per this time; the printed equation's is shorter by the drag ratio.
-_TIME = {False: "T", True: "T/gamma"}
+_TIME = {False: "T", True: "(T/gamma)"}
 
 
 def onset_text(title: str, onset: Onset, at_force: Spectrum) -> str:
@@ -66,20 +66,29 @@ def _onset_lines(onset: Onset, at_force: Spectrum) -> Iterator[tuple[str, str]]:
         what = "joins" if crossing.growth_slope > 0.0 else "calms down"
         yield (
             "later",
-            f"at {crossing.force:.8g} B/L^2 a pair of {crossing.frequency:.6g} cycles per {unit}"
-            f" {what}",
+            f"at {with_error(crossing.force, crossing.error)} B/L^2 a pair of"
+            f" {crossing.frequency:.6g} cycles per {unit} {what}",
         )
-    for value, frequency in zip(at_force.values, at_force.frequencies, strict=True):
+    for value, error in zip(at_force.values, at_force.errors, strict=True):
         if value.imag < 0.0:
             continue  # told with its partner
-        swings = f", {frequency:.8g} cycles per {unit}" if frequency > 0.0 else ""
-        yield f"at {at_force.force:.6g}", f"rate {value.real:.8g} per {unit}{swings}"
+        turns = 2.0 * np.pi
+        swings = with_error(value.imag / turns, error / turns) if value.imag > 0.0 else ""
+        told = f"rate {_rate(float(value.real), float(error))} per {unit}"
+        yield f"at {at_force.force:.6g}", f"{told}, {swings} cycles per {unit}" if swings else told
 
 
 def _crossing_lines(crossing: Crossing, unit: str) -> Iterator[tuple[str, str]]:
     frequency = with_error(crossing.frequency, crossing.frequency_error)
     yield "frequency", f"{frequency} cycles per {unit}"
-    yield "growth slope", f"{crossing.growth_slope:.8g} per {unit} and B/L^2"
+    yield "growth slope", f"{crossing.growth_slope:.6g} per {unit} and B/L^2"
+
+
+def _rate(value: float, error: float) -> str:
+    # A filament that is pulled straightens at rates of any smallness, each known to many digits.
+    if error < abs(value) < 1e-3:
+        return f"{value:.6g} ± {error:.1g}"
+    return with_error(value, error)
 
 
 def _number(value: float, digits: int) -> str:

@@ -12,7 +12,7 @@ from undula.errors import InputError
 from undula.models.loads import Load
 from undula.models.model import Energetics
 from undula.models.rod import PlanarRod, SpatialRod
-from undula.models.rod_matrix import exact_derivative
+from undula.models.rod_flow import RodFlow
 from undula.models.rod_velocity import observe, rate_of_change
 from undula.numerics.banded import to_dense
 from undula.numerics.system import RATES
@@ -47,6 +47,11 @@ class LinkedRod(ABC):
         mask = np.ones((self.links, self.dimension + 1))
         mask[:, -1] = 0.0
         return mask.ravel()
+
+    @cached_property
+    def equations(self) -> RodFlow:
+        """The equations as solvers of states want them, see `undula.numerics.problem`."""
+        return RodFlow(self.system)
 
     def positions(self, unknowns: Array) -> State:
         """Return the state in the integrator's vector; further axes in front are kept."""
@@ -104,22 +109,12 @@ class LinkedRod(ABC):
         """Return d rhs / dx, shape (size, size), from those of R v = f and of the constraint."""
         y, v = self._moving(x)
         v = v[:-RATES]
-        d, m, n = self.dimension, self.dimension + 1, y.size
-        moving = self.position_mask == 1.0
-        band = np.zeros((n, 6 * m - 1))
-        exact_derivative(self.system, y, v, 1.0, 0.0, band)
-        full = to_dense(band)
-        band[:] = 0.0
-        exact_derivative(self.system, y, np.zeros(n), 0.0, 0.0, band)
-        drag = to_dense(band)
-        forces = full - drag
-        forces[~moving] = 0.0
-        implicit = np.where(moving[None, :], drag, full)
-        right = -forces[:, moving]
-        if self.system.extensible:
-            implicit[np.ix_(~moving, moving)] = 0.0
-            right[~moving] = -full[np.ix_(~moving, moving)]
-        else:
+        d, m = self.dimension, self.dimension + 1
+        moving = self.equations.differential
+        change, drag = (to_dense(band) for band in self.equations.parts(y, v, 0.0))
+        implicit, right = np.where(moving, drag, change), -change[:, moving]
+        if not self.system.extensible:
+            implicit[np.ix_(~moving, moving)] = change[np.ix_(~moving, moving)]
             right[~moving] = -self._tangent_change(v, d, m)[:, moving]
         return np.asarray(np.linalg.solve(implicit, right)[moving])
 
@@ -140,14 +135,11 @@ class LinkedRod(ABC):
         Displacements y of the nodes in one direction obey drag y' = -stiffness y.
         """
         y = self._moving(self.straight())[0]
+        stiffness, drag = self.equations.parts(y, np.zeros(y.size), 0.0)
         m = self.dimension + 1
-        loaded, dragged = np.zeros((2, y.size, 6 * m - 1))
-        exact_derivative(self.system, y, np.zeros(y.size), 1.0, 0.0, loaded)
-        exact_derivative(self.system, y, np.zeros(y.size), 0.0, 0.0, dragged)
         # Every m-th row and column belongs to the same direction; none else matters to it.
         across = slice(m - 1, None, m)
-        stiffness, drag = (loaded - dragged)[::m, across], dragged[::m, across]
-        return to_dense(stiffness), to_dense(drag)
+        return to_dense(stiffness[::m, across]), to_dense(drag[::m, across])
 
     def departure(self, x: State) -> float:
         """Return the root mean square difference of the tangents from straight [rad]."""

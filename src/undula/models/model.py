@@ -43,6 +43,13 @@ class Model(Protocol):
         """Number of links that the model is made of."""
 
     @property
+    def equations(self) -> Any:
+        """The equations as solvers of states want them: `undula.numerics.problem.Equations`.
+
+        They tell as well, as `turning(y)`, the velocity of a unit rate of turning and its drag.
+        """
+
+    @property
     def system(self) -> Any:
         """The equations as the integrator wants them, see `undula.numerics.system`."""
 

@@ -25,6 +25,8 @@ from undula.numerics.pencil import LinearPencil, eigenvalues
 
 # Round-off splits a root off the real axis by about the root of the machine precision at worst.
 _REAL = 1e-6
+# It splits two that meet by the root of the error of p, which their ill-conditioned map enlarges.
+_TOGETHER = 0.1
 
 
 def crossings(pencil: LinearPencil) -> list[tuple[float, float]]:
@@ -52,10 +54,11 @@ def coalescences(pencil: LinearPencil) -> list[tuple[float, float]]:
     size = constant.shape[0]
     companion = np.eye(2 * size, k=-size)
     companion[:size] = -np.linalg.solve(constant, np.hstack([linear, quadratic]))
-    return [
-        (p, _closest_pair(eigenvalues(pencil.stiffness(p), pencil.mass)))
+    found = [
+        (p, _meeting(eigenvalues(pencil.stiffness(p), pencil.mass)))
         for p in _positive_real(np.linalg.eigvals(companion))
     ]
+    return [(p, sigma) for p, sigma in found if sigma is not None]
 
 
 def _rates(mass: Array, stiffness: Array) -> Array:
@@ -85,8 +88,12 @@ def _positive_real(inverse: Any) -> list[float]:
     return sorted(float(p) for p in 1.0 / inverse.real[real])
 
 
-def _closest_pair(values: ComplexArray) -> float:
-    """Return the middle of the two values that differ least for their size."""
+def _meeting(values: ComplexArray) -> float | None:
+    """Return the middle of the two that differ least for their size; None if none are near."""
     i, j = np.triu_indices(values.size, 1)
-    k = int(np.argmin(np.abs(values[i] - values[j]) / np.abs(values[i] + values[j])))
-    return float(0.5 * (values[i[k]] + values[j[k]]).real)
+    middle, half = 0.5 * (values[i] + values[j]), 0.5 * np.abs(values[i] - values[j])
+    near = (middle.imag == 0.0) & (half < _TOGETHER * np.abs(middle))
+    if not near.any():
+        return None
+    closest = np.argmin(half[near] / np.abs(middle[near]))
+    return float(middle[near][closest].real)

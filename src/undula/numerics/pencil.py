@@ -2,9 +2,10 @@
 
     K(p) c = -sigma M c
 
-with a regular stiffness K and a parameter p. Eigenvalues are computed as 1/mu from the operator
--K^-1 M: the slow ones, which decide on stability, are then those of largest modulus, and accurate
-even where M is compact and most of its own spectrum is lost in round-off.
+with a parameter p. Eigenvalues are computed as s - 1/mu from the operator (K + s M)^-1 M with a
+shift s: the slow ones, which decide on stability, are then those of largest modulus, and accurate
+even where M is compact and most of its own spectrum is lost in round-off. Without a shift one that
+comes close to 0 would outshine all others.
 """
 
 from dataclasses import dataclass
@@ -14,6 +15,9 @@ import numpy as np
 import scipy.linalg as sl
 
 from undula.arrays import Array, ComplexArray
+
+# Slow, and not a value that a real eigenvalue would have for some reason of its own.
+_SHIFT = 0.8414709848078965
 
 
 class Pencil(Protocol):
@@ -49,17 +53,17 @@ class LinearPencil:
 
 def eigenvalues(stiffness: Array, mass: Array) -> ComplexArray:
     """Return all resolved sigma of K c = -sigma M c, by falling real part."""
-    inverse = np.asarray(np.linalg.eigvals(-np.linalg.solve(stiffness, mass)), dtype=complex)
-    values = 1.0 / inverse[_resolved(inverse)]
+    inverse = np.asarray(np.linalg.eigvals(_inverse(stiffness, mass)), dtype=complex)
+    values = _SHIFT - 1.0 / inverse[_resolved(inverse)]
     return np.asarray(values[_by_rate(values)])
 
 
 def eigenpairs(stiffness: Array, mass: Array) -> tuple[ComplexArray, ComplexArray]:
     """Return all resolved sigma by falling real part, and their vectors c as columns."""
-    inverse, vectors = np.linalg.eig(-np.linalg.solve(stiffness, mass))
+    inverse, vectors = np.linalg.eig(_inverse(stiffness, mass))
     inverse, vectors = np.asarray(inverse, dtype=complex), np.asarray(vectors, dtype=complex)
     kept = _resolved(inverse)
-    values, vectors = 1.0 / inverse[kept], vectors[:, kept]
+    values, vectors = _SHIFT - 1.0 / inverse[kept], vectors[:, kept]
     order = _by_rate(values)
     return values[order], vectors[:, order]
 
@@ -79,6 +83,10 @@ def _slowest(stiffness: Array, mass: Array, size: int) -> Array:
     values, vectors = eigenpairs(stiffness, mass)
     slow = vectors[:, np.argsort(np.abs(values))[:size]]
     return np.asarray(sl.orth(np.hstack([slow.real, slow.imag]))[:, :size])
+
+
+def _inverse(stiffness: Array, mass: Array) -> Any:
+    return np.linalg.solve(stiffness + _SHIFT * mass, mass)
 
 
 def _resolved(inverse: ComplexArray) -> Any:

@@ -27,6 +27,9 @@ from undula.numerics.pencil import Pencil
 _MOST_STEPS = 40
 # Quadratic convergence: a step this small, relative to the unknown, leaves nothing but round-off.
 _SMALL_STEP = 1e-9
+# The borders are turned this often before the first step: without, a guess that is 5 per cent off
+# is often too far; with more it makes no difference.
+_FIRST_TURNS = 2
 
 
 @dataclass(frozen=True)
@@ -64,13 +67,17 @@ class Coalescence:
 def refine_crossing(pencil: Pencil, p: float, omega: float) -> CriticalPair | None:
     """Return the crossing near a guess; None if Newton's method finds none with p, omega > 0."""
     mass = pencil.mass
-    border = _Border(mass.shape[0])
+    border = None
     for _ in range(_MOST_STEPS):
         stiffness, slope = pencil.stiffness(p), pencil.slope(p)
-        bordered = border.around(stiffness + 1j * omega * mass)
+        if not np.isfinite(stiffness + slope).all():
+            return None
+        matrix = stiffness + 1j * omega * mass
+        border = border or _Border(matrix)
+        bordered = border.around(matrix)
         by_p, by_omega = bordered.change(slope), bordered.change(1j * mass)
         jacobian = np.array([[by_p.real, by_omega.real], [by_p.imag, by_omega.imag]])
-        step = np.linalg.solve(jacobian, [-bordered.g.real, -bordered.g.imag])
+        step = _newton_step(jacobian, np.array([bordered.g.real, bordered.g.imag]))
         p, omega = p + float(step[0]), omega + float(step[1])
         if not (p > 0.0 and omega > 0.0 and np.isfinite(p + omega)):
             return None
@@ -85,16 +92,20 @@ def refine_crossing(pencil: Pencil, p: float, omega: float) -> CriticalPair | No
 def refine_coalescence(pencil: Pencil, p: float, sigma: float) -> Coalescence | None:
     """Return the coalescence near a guess; None if Newton's method finds none with p > 0."""
     mass = pencil.mass
-    border = _Border(mass.shape[0])
+    border = None
     for _ in range(_MOST_STEPS):
         stiffness, slope = pencil.stiffness(p), pencil.slope(p)
-        bordered = border.around(stiffness + sigma * mass)
+        if not np.isfinite(stiffness + slope).all():
+            return None
+        matrix = stiffness + sigma * mass
+        border = border or _Border(matrix)
+        bordered = border.around(matrix)
         by_p, by_sigma = bordered.change(slope), bordered.change(mass)
         c_by_p, c_by_sigma = bordered.answer(slope), bordered.answer(mass)
         twice = 2.0 * bordered.product(mass @ c_by_sigma)
         mixed = bordered.product(mass @ c_by_p + slope @ c_by_sigma)
         jacobian = np.real([[by_p, by_sigma], [mixed, twice]])
-        step = np.linalg.solve(jacobian, np.real([-bordered.g, -by_sigma]))
+        step = _newton_step(jacobian, np.real([bordered.g, by_sigma]))
         p, sigma = p + float(step[0]), sigma + float(step[1])
         if not (p > 0.0 and np.isfinite(p + sigma)):
             return None
@@ -104,13 +115,24 @@ def refine_coalescence(pencil: Pencil, p: float, sigma: float) -> Coalescence | 
     return None
 
 
+def _newton_step(jacobian: Array, values: Array) -> Array:
+    """Return the step to where the values vanish; NaN where they do not change."""
+    try:
+        return np.asarray(np.linalg.solve(jacobian, -values))
+    except np.linalg.LinAlgError:
+        return np.full(values.shape, np.nan)
+
+
 class _Border:
     """The two border vectors, turned towards the null vectors from one step to the next."""
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, matrix: Any) -> None:
+        size = matrix.shape[0]
         # Any vectors that are not orthogonal to the null vectors will do; these hardly ever are.
         self.column: Any = np.cos(np.arange(size)) / np.sqrt(size)
         self.row: Any = np.sin(1.0 + np.arange(size)) / np.sqrt(size)
+        for _ in range(_FIRST_TURNS):
+            self.around(matrix)
 
     def around(self, matrix: Any) -> _Bordered:
         bordered = _Bordered(matrix, self.column, self.row)

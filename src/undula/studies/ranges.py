@@ -4,14 +4,13 @@ import math
 
 import numpy as np
 
-from undula.arrays import Array
 from undula.errors import InputError
 
 # More points than this are a slip of the finger, not a curve.
 _MOST = 1_000_000
 
 
-def parse_values(option: str, text: str) -> Array:
+def parse_values(option: str, text: str) -> tuple[float, ...]:
     """Return the numbers that a range or a list stands for.
 
     Parameters
@@ -23,7 +22,8 @@ def parse_values(option: str, text: str) -> Array:
 
     Returns
     -------
-    ndarray of shape (k,)
+    tuple of float
+        One at least.
 
     Raises
     ------
@@ -32,20 +32,42 @@ def parse_values(option: str, text: str) -> Array:
     """
     parts = text.split(":")
     if len(parts) == 1:
-        return np.array([_number(option, text, part) for part in text.split(",")])
+        return tuple(_number(option, text, part) for part in text.split(","))
     if len(parts) != 3:
         raise _wrong(option, text)
     start, stop = (_number(option, text, part) for part in parts[:2])
     count = parts[2].strip()
-    if not (count.isascii() and count.isdigit() and 1 <= int(count) <= _MOST):
+    # Python reads no whole number of thousands of digits.
+    digits = count.isascii() and count.isdigit() and len(count) <= len(str(_MOST))
+    if not (digits and 1 <= int(count) <= _MOST):
         raise InputError(
             f"{option} {text}: {count or 'nothing'} is no number of points; give a whole number"
             f" from 1 to {_MOST}"
         )
-    return np.linspace(start, stop, int(count))
+    if not math.isfinite(stop - start):
+        raise InputError(f"{option} {text} spans more than a number can hold; give a shorter range")
+    return tuple(np.linspace(start, stop, int(count)).tolist())
 
 
-def parse_axis(option: str, text: str) -> tuple[str, Array]:
+def parse_way(option: str, text: str) -> tuple[str, float, float]:
+    """Return the parameter, the start and the end of ``load.force=38:300``.
+
+    Raises
+    ------
+    InputError
+        There is no parameter, or what follows is not two different numbers.
+    """
+    name, equals, way = (part.strip() for part in text.partition("="))
+    ends = way.split(":")
+    if not (name and equals and len(ends) == 2):
+        raise InputError(f"{option} {text} has no 'KEY=START:END'; write it like load.force=38:300")
+    start, end = (_number(option, text, part) for part in ends)
+    if start == end:
+        raise InputError(f"{option} {text} goes nowhere; give two different numbers")
+    return name, start, end
+
+
+def parse_axis(option: str, text: str) -> tuple[str, tuple[float, ...]]:
     """Return the parameter and the values of ``load.slope=-1:1:41``.
 
     Raises

@@ -127,6 +127,11 @@ def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunIn
     return _read(RunInput, path, overrides)
 
 
+def read_filament_input(path: Path | None = None, overrides: Sequence[str] = ()) -> FilamentInput:
+    """Read what every command reads, as `read_input` does for a run."""
+    return _read(FilamentInput, path, overrides)
+
+
 def read_stability_input(path: Path | None = None, overrides: Sequence[str] = ()) -> StabilityInput:
     """Read the input of a question about the straight state, as `read_input` does for a run."""
     return _read(StabilityInput, path, overrides)

@@ -1,0 +1,95 @@
+"""Answers in the limit of many links, from a few numbers of links and the known order.
+
+A quantity of a body that links stand for depends on their number N as q + c / N^2 + d / N^4 + ...
+From N, 2 N and 4 N the first two terms are taken off (Romberg's scheme); what the second one
+changed is the stated error, which is that of the answer before it, and so on the safe side.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from undula.analysis.states import NotFound
+from undula.arrays import Array
+from undula.errors import InputError
+from undula.models.model import Model
+
+#: Numbers of links relative to the model's own.
+REFINEMENTS = (1, 2, 4)
+
+S = TypeVar("S")
+
+
+@dataclass(frozen=True)
+class Converged(Generic[S]):
+    """Quantities of a state in the limit of many links.
+
+    Attributes
+    ----------
+    finest : object
+        The state with the most links.
+    links : tuple of int
+        The numbers of links that were used.
+    values, errors : mapping of str to float
+        Each quantity extrapolated, and its estimated error.
+    """
+
+    finest: S
+    links: tuple[int, ...]
+    values: Mapping[str, float]
+    errors: Mapping[str, float]
+
+
+def converge(
+    model: Model,
+    solve: Callable[[Model, S | None], S | NotFound],
+    quantities: Callable[[S], Mapping[str, float]],
+) -> Converged[S] | NotFound:
+    """Solve a question with more and more links, and extrapolate what it gives.
+
+    Parameters
+    ----------
+    model : Model
+        The model with the fewest links.
+    solve : callable
+        From a model, and the answer for fewer links, to the answer or to none.
+    quantities : callable
+        From an answer to the numbers of interest.
+
+    Raises
+    ------
+    InputError
+        The links of the model are its body, so that there is no limit.
+    """
+    answers: list[S] = []
+    links = tuple(refinement * model.links for refinement in REFINEMENTS)
+    for count in links:
+        finer = model.with_links(count)
+        if finer is None:
+            raise InputError(
+                "the links of this model are its body: there is nothing to converge to; leave"
+                " converge out"
+            )
+        found = solve(finer, answers[-1] if answers else None)
+        if isinstance(found, NotFound):
+            return found
+        answers.append(found)
+    rows = [quantities(answer) for answer in answers]
+    limits = {name: extrapolated([row[name] for row in rows]) for name in rows[0]}
+    return Converged(
+        finest=answers[-1],
+        links=links,
+        values={name: value for name, (value, _) in limits.items()},
+        errors={name: error for name, (_, error) in limits.items()},
+    )
+
+
+def extrapolated(values: Sequence[float]) -> tuple[float, float]:
+    """Return the limit of values at N, 2 N, 4 N, ... with its estimated error."""
+    column: Array = np.asarray(values, dtype=float)
+    before = column
+    for order in range(2, 2 * len(values), 2):
+        before, column = column, column[1:] + np.diff(column) / (2.0**order - 1.0)
+    return float(column[-1]), float(abs(column[-1] - before[-1]))

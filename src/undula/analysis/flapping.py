@@ -1,0 +1,183 @@
+"""Planar flapping, solved for: half a beat in the plane, closed by the mirror, and then judged.
+
+Half a period later a beat is its own mirror image, so that half of it, in the plane, is all that
+has to be solved for (`undula.numerics.orbits`). Disturbances in the plane and out of it do not
+mix: the former come with the solution, the latter from the equations in space, linearised along it.
+"""
+
+import numpy as np
+
+from undula.analysis.branches import Family
+from undula.analysis.integrate import integrate
+from undula.analysis.parameters import changed, value_of
+from undula.analysis.run import Run
+from undula.analysis.states import Flapping, NotFound
+from undula.arrays import Array, ComplexArray
+from undula.models.model import Model
+from undula.models.starts import from_state, planar
+from undula.numerics.closure import Closure
+from undula.numerics.floquet import floquet
+from undula.numerics.flow import linearised_flow
+from undula.numerics.orbits import (
+    LastShot,
+    Orbit,
+    OrbitProblem,
+    Reference,
+    find_orbit,
+    orbit_at,
+)
+from undula.numerics.shooting import Shooting, Shot
+
+FORCE = "load.force"
+# Steps of half a beat: with 3 stages the error of the frequency is then some 1e-8 (measured, and
+# stated in each answer).
+INTERVALS = 32
+# The run that a beat is taken from: a start large enough to be quick, and how long it may take.
+_START, _LONGEST = 0.3, 6.0
+
+
+def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping | NotFound:
+    """Solve for the planar beat of a model.
+
+    Parameters
+    ----------
+    model : Model
+        In space or confined.
+    guess : Run or Flapping, optional
+        A run that ends in a planar beat, or the beat of a similar model, with any number of links.
+        Without one a short confined run gives the first guess.
+
+    Returns
+    -------
+    Flapping or NotFound
+        The latter says how far the search came, and what to try.
+    """
+    flat = model.with_(confined=True)
+    first = _start_and_half_period(flat, guess)
+    if isinstance(first, NotFound):
+        return first
+    x, half_period = first
+    shooting = _shooting(model, FORCE)
+    search = find_orbit(shooting, np.append(x, half_period), model.load.force)
+    if search.orbit is None:
+        residual = search.solution.residual if search.solution else None
+        return NotFound(f"no planar beat was found from the guess: {search.advice}", residual)
+    return _judged(model, search.orbit)
+
+
+def flapping_family(state: Flapping, parameter: str, scale: float) -> Family[Flapping]:
+    """Return the family of a planar beat along a parameter."""
+
+    def judge(problem: OrbitProblem, u: Array, p: float) -> Flapping:
+        orbit = orbit_at(problem, u, p)
+        assert orbit is not None  # it was solved for
+        return _judged(changed(state.model, parameter, p), orbit)
+
+    shooting = _shooting(state.model, parameter)
+    start = shooting.shoot(flapping_unknowns(state), value_of(state.model, parameter))
+    assert isinstance(start, Shot)  # the state was found so
+    problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
+    return Family(parameter, problem, judge, _named, scale)
+
+
+def flapping_unknowns(state: Flapping) -> Array:
+    """Return the unknowns of a state in the equations of its family: a start, half the period."""
+    start = state.planar.positions(state.unknowns[-1])
+    return np.append(start, 0.5 * state.period)
+
+
+def _mirrored(y: Array) -> Array:
+    """Return a vector of the planar equations (x, z, T at each node) with x reflected."""
+    mirrored = np.array(y)
+    mirrored[::3] *= -1.0
+    return mirrored
+
+
+def _shooting(model: Model, parameter: str) -> Shooting:
+    flat = model.with_(confined=True)
+    return Shooting(
+        equations_at=lambda p: changed(flat, parameter, p).equations,
+        closure=Closure(_mirrored),
+        intervals=INTERVALS,
+    )
+
+
+def _start_and_half_period(
+    flat: Model, guess: Run | Flapping | None
+) -> tuple[Array, float] | NotFound:
+    if isinstance(guess, Flapping):
+        return _positions(flat, guess.nodes[-1]), 0.5 * guess.period
+    run = guess or integrate(flat, planar(flat, _START), until="settled", limit=_LONGEST)
+    if run.frequency is None or run.frequency.value == 0.0:
+        return NotFound(
+            f"a {'given' if guess else 'confined'} run does not beat ({run.verdict.name}); planar"
+            " flapping begins at the onset, see undula stability"
+        )
+    return _positions(flat, run.motion.nodes[-1]), 0.5 / abs(run.frequency.value)
+
+
+def _positions(flat: Model, nodes: Array) -> Array:
+    return flat.admissible(from_state(flat, nodes))
+
+
+def _judged(model: Model, orbit: Orbit) -> Flapping:
+    """Return the beat that an orbit of half its period is, with its disturbances."""
+    shot, half = orbit.shot, orbit.shot.duration
+    velocity = shot.basis.T @ shot.velocity
+    in_plane, shift = _exponents(shot.monodromy, velocity, 1.0, half)
+    trivial, out_of_plane = [shift], np.zeros(0, dtype=np.complex128)
+    if model.dimension == 3:
+        # A small turn about the axis moves the nodes across the plane by their deflection, which
+        # half a beat later is reversed.
+        out_of_plane, turn = _exponents(_across(model, orbit), shot.y[::3], -1.0, half)
+        trivial.append(turn)
+    ends = shot.flow.stages[:, -1]
+    return Flapping(
+        model=model,
+        period=2.0 * half,
+        time=np.arange(1, 2 * len(ends) + 1) * half / len(ends),
+        unknowns=np.concatenate([ends, np.apply_along_axis(_mirrored, 1, ends)]),
+        residual=float(np.abs((shot.end - shot.y)[shot.moving]).max()),
+        in_plane=in_plane,
+        out_of_plane=out_of_plane,
+        trivial=tuple(trivial),
+        time_error=np.nan,
+    )
+
+
+def _across(model: Model, orbit: Orbit) -> Array:
+    """Return what becomes of displacements (N,) out of the plane in half a beat, shape (N, N)."""
+    shot = orbit.shot
+    links = model.links
+    columns = np.zeros((4 * links, links))
+    columns[1::4] = np.eye(links)
+    stages = _in_space(shot.flow.stages)
+    change = linearised_flow(model.equations, _in_space(shot.y), stages, shot.duration, columns)
+    assert change is not None  # the stages solve equations that are regular in the plane
+    return change.by_start[1::4]
+
+
+def _in_space(y: Array) -> Array:
+    """Return vectors (..., 3 N) of the planar equations as those (..., 4 N) in space."""
+    by_node = y.reshape(*y.shape[:-1], -1, 3)
+    whole = np.zeros((*by_node.shape[:-1], 4))
+    whole[..., [0, 2, 3]] = by_node
+    return whole.reshape(*y.shape[:-1], -1)
+
+
+def _exponents(
+    monodromy: Array, direction: Array, expected: float, half: float
+) -> tuple[ComplexArray, float]:
+    """Return the exponents of a half-period map, and the error of its known multiplier."""
+    judged = floquet(monodromy, direction[:, None], np.array([expected]))
+    # A disturbance that is gone to the last digit has no exponent.
+    multipliers = judged.multipliers[np.abs(judged.multipliers) > np.finfo(float).tiny]
+    exponents = np.asarray(np.log(multipliers) / half, dtype=np.complex128)
+    order = np.lexsort((-exponents.imag, -exponents.real))
+    return exponents[order], float(judged.known_errors[0])
+
+
+def _named(state: Flapping, index: int) -> str:
+    swing = abs(state.exponents[index].imag) * 0.5 * state.period
+    # Half-period multipliers +-1 are real; what they break is a symmetry.
+    return "symmetry breaking" if min(swing, abs(swing - np.pi)) < 1e-6 else "torus"

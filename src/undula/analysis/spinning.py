@@ -1,0 +1,150 @@
+"""Spinning states, solved for: from the Hopf point on, from a run, or from a nearby state."""
+
+import numpy as np
+
+from undula.analysis.branches import Family
+from undula.analysis.linearisations import linearised
+from undula.analysis.onset import first_pair
+from undula.analysis.parameters import changed
+from undula.analysis.relative_equilibrium import TurningShape, rotating_spectrum
+from undula.analysis.run import Run
+from undula.analysis.states import NotFound, Spinning
+from undula.arrays import Array, Nodes
+from undula.errors import InputError
+from undula.models.model import Model
+from undula.models.starts import from_state
+from undula.numerics.continuation import Point, Steps, follow, solved_at
+
+FORCE = "load.force"
+# A branch that has not come to the force after so many steps will hardly do so.
+_MOST_STEPS = 400
+
+
+def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning | NotFound:
+    """Solve for the spinning state of a model.
+
+    Parameters
+    ----------
+    model : Model
+    guess : Run or Spinning, optional
+        A run that ends in spinning, or the state of a similar model, with any number of links.
+        Without one the branch is followed from the Hopf point of the straight state.
+
+    Returns
+    -------
+    Spinning or NotFound
+        The latter says how far the search came, and what to try.
+
+    Raises
+    ------
+    InputError
+        The model is confined to a plane.
+    """
+    require_space(model)
+    if guess is not None:
+        nodes, rate = _shape_and_rate(guess)
+        return _solved_from(model, nodes, rate)
+    start = spinning_start(model)
+    if start is None:
+        return NotFound("the straight state stays stable, so that no spinning state begins at it")
+    return _followed_to(model, *start)
+
+
+def require_space(model: Model) -> None:
+    """Refuse a model that is confined to a plane."""
+    if model.dimension != 3:
+        raise InputError("a confined model cannot spin; set confined = false")
+
+
+def spinning_start(model: Model) -> tuple[TurningShape, Point] | None:
+    """Return the problem in the force and the Hopf point at which its branch begins.
+
+    The tangent there is the critical mode, turning: x + i y = c(s) exp(i omega t).
+    """
+    pair = first_pair(linearised(model, "discrete"))
+    if pair is None:
+        return None
+    at = changed(model, FORCE, pair.p)
+    straight = at.unknowns(at.straight())
+    mode = pair.vector / pair.vector[-1] * abs(pair.vector[-1])
+    tangent = np.zeros(straight.size + 1)
+    by_node = tangent[:-1].reshape(model.links, -1)
+    by_node[:, 0], by_node[:, 1] = mode.real, mode.imag
+    problem = TurningShape(model, FORCE, tangent[:-1].copy(), pair.omega)
+    tangent /= np.sqrt(problem.weights @ tangent**2)
+    return problem, Point(np.append(straight, pair.omega), pair.p, tangent, 0.0)
+
+
+def spinning_state(problem: TurningShape, u: Array, p: float) -> Spinning:
+    """Return the state that solves a problem, judged."""
+    model = changed(problem.model, problem.parameter, p)
+    y, rate = u[:-1], float(u[-1])
+    velocity, dragged = model.equations.turning(y)
+    left = model.equations.residual(y, rate * velocity)
+    values = rotating_spectrum(model, y, rate)
+    own = int(np.argmin(np.abs(values)))
+    return Spinning(
+        model=model,
+        unknowns=y,
+        rate=rate,
+        residual=float(np.abs(left).max() / np.abs(rate * dragged).max()),
+        exponents=np.delete(values, own),
+        trivial=complex(values[own]),
+    )
+
+
+def _shape_and_rate(guess: Run | Spinning) -> tuple[Nodes, float]:
+    if isinstance(guess, Spinning):
+        return guess.nodes, guess.rate
+    turning = guess.rotation_frequency
+    rate = 2.0 * np.pi * turning.value if turning else 0.0
+    return guess.motion.nodes[-1], rate
+
+
+def _solved_from(model: Model, nodes: Nodes, rate: float) -> Spinning | NotFound:
+    y = model.unknowns(model.admissible(from_state(model, nodes)))
+    problem = TurningShape(model, FORCE, y, max(1.0, abs(rate)))
+    solved = solved_at(problem, np.append(y, rate), model.load.force)
+    if solved is None:
+        residual = float(
+            np.abs(problem.evaluate(np.append(y, rate), model.load.force).residual).max()
+        )
+        return NotFound(
+            f"Newton's method finds no spinning state from the guess (residual {residual:.2g});"
+            " let the run settle longer, or start without a guess",
+            residual,
+        )
+    return spinning_state(problem, solved[0], model.load.force)
+
+
+def _followed_to(model: Model, problem: TurningShape, start: Point) -> Spinning | NotFound:
+    """Return the first state at the model's force on a branch that grows towards it."""
+    target, last = model.load.force, start
+    steps = Steps(scale=start.p)
+    ends = 0.0, target if target > start.p else 2.0 * start.p
+    for count, point in enumerate(follow(problem, start, steps, ends)):
+        if point.p == target > last.p:
+            return spinning_state(problem, point.u, target)
+        last = point
+        if count > _MOST_STEPS:
+            break
+    return NotFound(
+        f"the spinning branch begins at force {start.p:.6g} and was followed to {last.p:.6g}"
+        f" without coming to {target:.6g}; ask for a force beyond its beginning, or give a run"
+        " that spins as a guess"
+    )
+
+
+def spinning_family(state: Spinning, parameter: str, scale: float) -> Family[Spinning]:
+    """Return the family of a spinning state along a parameter."""
+    problem = TurningShape(state.model, parameter, state.unknowns, abs(state.rate))
+    return Family(parameter, problem, spinning_state, _named, scale)
+
+
+def _named(state: Spinning, index: int) -> str:
+    return "torus" if state.exponents[index].imag != 0.0 else "symmetry breaking"
+
+
+def spinning_unknowns(state: Spinning) -> Array:
+    """Return the unknowns of a state in the equations of its family."""
+    return np.append(state.unknowns, state.rate)

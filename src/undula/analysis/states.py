@@ -1,0 +1,352 @@
+"""States that were solved for: what is common to spinning and flapping, and what to say of none.
+
+`exponents` are the growth rates and angular frequencies [1/T] of small disturbances of a state, by
+falling real part, without those that belong to its symmetries (a shift in time, a turn about the
+axis), which are exactly 0 and are kept apart as `trivial`: their distance from 0 tells how well
+the state was solved for.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+
+from undula.analysis.observables import Range, envelope, tip_height, tip_radius
+from undula.arrays import Array, ComplexArray, Nodes, Shapes
+from undula.models.model import Model
+
+# Extremes over a period are read from so many times more points than were computed.
+_FINER = 8
+
+
+@dataclass(frozen=True)
+class NotFound:
+    """No state was found; false in a condition.
+
+    Attributes
+    ----------
+    reason : str
+        What was tried, how far it came, and what to try next, in one sentence.
+    residual : float or None
+        The residual at which the search ended, None if there was nothing to search from.
+    """
+
+    reason: str
+    residual: float | None = None
+
+    def __bool__(self) -> bool:
+        """Return False: there is no state."""
+        return False
+
+
+@dataclass(frozen=True)
+class Spinning:
+    """A relative equilibrium: a fixed shape that turns about the axis at a constant rate.
+
+    Attributes
+    ----------
+    model : Model
+    unknowns : ndarray of shape (n,)
+        Positions and multipliers.
+    rate : float
+        Rate of turning [rad/T], counterclockwise if positive.
+    residual : float
+        Largest entry of what is left of the equations, relative to the forces in them.
+    exponents : ndarray of shape (k,)
+        Of disturbances seen in the frame that turns with it.
+    trivial : complex
+        The exponent of a turn about the axis: the one next to 0.
+    error : float or None
+        Estimated error of the frequency against the body that the links stand for [turns per T],
+        None where the links are the body, or if it was not asked for.
+    """
+
+    model: Model
+    unknowns: Array
+    rate: float
+    residual: float
+    exponents: ComplexArray
+    trivial: complex
+    error: float | None = None
+
+    @property
+    def x(self) -> Array:
+        """The state of the model, shape (size,)."""
+        return self.model.positions(self.unknowns)
+
+    @property
+    def nodes(self) -> Nodes:
+        """Positions of the nodes (N + 1, 3) [L]."""
+        return self.model.nodes(self.x)
+
+    @property
+    def force(self) -> float:
+        """Total follower force [B/L^2]."""
+        return self.model.load.force
+
+    @property
+    def frequency(self) -> float:
+        """Turns per T."""
+        return abs(self.rate) / (2.0 * np.pi)
+
+    @cached_property
+    def bending_energy(self) -> float:
+        """Bending energy [B/L]."""
+        return float(self.model.observe(self.unknowns[None, :]).bending_energy[0])
+
+    @property
+    def energy(self) -> Range:
+        """Bending energy [B/L] over a turn, which is constant."""
+        return Range(self.bending_energy, self.bending_energy, self.bending_energy)
+
+    @property
+    def tip_radius(self) -> float:
+        """Distance of the tip from the axis [L]."""
+        return float(tip_radius(self.nodes))
+
+    @property
+    def tip_height(self) -> float:
+        """Height of the tip above the clamp [L]."""
+        return float(tip_height(self.nodes))
+
+    @cached_property
+    def power_balance_error(self) -> float:
+        """Difference of active power and dissipation, relative to either."""
+        active, dissipated = self.model.power(self.x)
+        return abs(active - dissipated) / abs(active)
+
+    @property
+    def leading_rate(self) -> float:
+        """Largest growth rate of a disturbance [1/T]."""
+        return float(self.exponents[0].real)
+
+    @property
+    def stable(self) -> bool:
+        """Whether all disturbances decay."""
+        return self.leading_rate < 0.0
+
+    def __str__(self) -> str:
+        """Tell it in one line."""
+        word = "stable" if self.stable else "unstable"
+        return (
+            f"spinning at {self.frequency:.8g} turns per T under force {self.force:.6g}: {word},"
+            f" leading rate {self.leading_rate:.4g} /T (trivial one {abs(self.trivial):.1g})"
+        )
+
+
+@dataclass(frozen=True)
+class Flapping:
+    """A planar beat: a periodic orbit that is its own mirror image half a period later.
+
+    Multipliers and exponents are those of a whole period; those of disturbances in the plane and
+    out of it are apart, as neither drives the other.
+
+    Attributes
+    ----------
+    model : Model
+        In space, or confined to the plane; then there are no disturbances out of it.
+    period : float
+        Time of one beat [T].
+    time : ndarray of shape (m,)
+        Equally spaced instants over one period [T].
+    unknowns : ndarray of shape (m, n)
+        Positions and multipliers of the model confined to the plane, at these instants.
+    residual : float
+        By how much the beat fails to close [L].
+    in_plane, out_of_plane : ndarray of shape (k,)
+        Exponents [1/T] of disturbances, by falling real part, without trivial ones.
+    trivial : tuple of float
+        |multiplier - 1| of a shift in time, and of a turn about the axis unless confined.
+    time_error : float
+        Estimated error of the frequency by the steps in time [beats per T].
+    error : float or None
+        Estimated error of the frequency against the body that the links stand for, None where the
+        links are the body, or if it was not asked for.
+    """
+
+    model: Model
+    period: float
+    time: Array
+    unknowns: Array
+    residual: float
+    in_plane: ComplexArray
+    out_of_plane: ComplexArray
+    trivial: tuple[float, ...]
+    time_error: float
+    error: float | None = None
+
+    @cached_property
+    def planar(self) -> Model:
+        """The model confined to the plane of the beat."""
+        return self.model.with_(confined=True)
+
+    @property
+    def nodes(self) -> Shapes:
+        """Positions of the nodes (m, N + 1, 3) [L] over the period."""
+        return self.planar.nodes(self.planar.positions(self.unknowns))
+
+    @property
+    def force(self) -> float:
+        """Total follower force [B/L^2]."""
+        return self.model.load.force
+
+    @property
+    def frequency(self) -> float:
+        """Beats per T."""
+        return 1.0 / self.period
+
+    @cached_property
+    def energy(self) -> Range:
+        """Bending energy [B/L] over the period."""
+        return self._over_period(self.planar.observe(self.unknowns).bending_energy)
+
+    @cached_property
+    def tip_radius(self) -> Range:
+        """Distance of the tip from the axis [L] over the period."""
+        return self._over_period(tip_radius(self.nodes))
+
+    @cached_property
+    def tip_height(self) -> Range:
+        """Height of the tip above the clamp [L] over the period."""
+        return self._over_period(tip_height(self.nodes))
+
+    def _over_period(self, values: Array) -> Range:
+        # The trigonometric polynomial through the samples, read between them.
+        fine = np.fft.irfft(np.fft.rfft(values), _FINER * values.size) * _FINER
+        extremes = envelope(np.concatenate([fine[-1:], fine, fine[:1]]))
+        return Range(extremes.min, extremes.max, float(np.mean(values)))
+
+    @cached_property
+    def power_balance_error(self) -> float:
+        """Difference of active power and dissipation over the period, relative to either."""
+        observed = self.planar.observe(self.unknowns)
+        active, dissipated = (
+            float(np.mean(power)) for power in (observed.active_power, observed.dissipation)
+        )
+        return abs(active - dissipated) / abs(active)
+
+    @cached_property
+    def exponents(self) -> ComplexArray:
+        """Exponents [1/T] of all disturbances, by falling real part, without trivial ones."""
+        both = np.concatenate([self.in_plane, self.out_of_plane])
+        return both[np.lexsort((-both.imag, -both.real))]
+
+    @property
+    def leading_rate_in_plane(self) -> float:
+        """Largest growth rate of a disturbance in the plane [1/T]."""
+        return float(self.in_plane[0].real)
+
+    @property
+    def leading_rate_out_of_plane(self) -> float | None:
+        """Largest growth rate of a disturbance out of the plane [1/T], None if confined."""
+        return float(self.out_of_plane[0].real) if self.out_of_plane.size else None
+
+    @property
+    def leading_rate(self) -> float:
+        """Largest growth rate of a disturbance [1/T]."""
+        return float(self.exponents[0].real)
+
+    @property
+    def stable(self) -> bool:
+        """Whether all disturbances decay."""
+        return self.leading_rate < 0.0
+
+    def __str__(self) -> str:
+        """Tell it in one line."""
+        word = "stable" if self.stable else "unstable"
+        out = self.leading_rate_out_of_plane
+        outside = "" if out is None else f", out of it {out:.4g} /T"
+        return (
+            f"flapping at {self.frequency:.8g} beats per T under force {self.force:.6g}: {word},"
+            f" leading rate in the plane {self.leading_rate_in_plane:.4g} /T{outside}"
+            f" (trivial multipliers to {max(self.trivial):.1g})"
+        )
+
+
+class State(Protocol):
+    """What a branch asks of its states."""
+
+    @property
+    def exponents(self) -> ComplexArray:
+        """Of disturbances, by falling real part, without the trivial ones."""
+
+    @property
+    def frequency(self) -> float:
+        """Cycles per T."""
+
+    @property
+    def energy(self) -> Range:
+        """Bending energy over a cycle [B/L]."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether all disturbances decay."""
+
+
+S = TypeVar("S", bound=State)
+
+
+@dataclass(frozen=True)
+class Bifurcation(Generic[S]):
+    """A point of a branch at which a disturbance turns from decay to growth, or back.
+
+    Attributes
+    ----------
+    kind : str
+        "fold", "torus", "symmetry breaking", "period doubling", "Hopf" or "branch point".
+    value, error : float
+        The parameter there, and how exactly it was located on the discrete model.
+    state : State
+        The state there.
+    frequency : float
+        Of the state [cycles per T].
+    second_frequency : float or None
+        Of the disturbance that turns, seen in the state's own frame [cycles per T].
+    unstable_before, unstable_after : int
+        How many disturbances grow before and after, in the direction of following.
+    """
+
+    kind: str
+    value: float
+    error: float
+    state: S
+    frequency: float
+    second_frequency: float | None
+    unstable_before: int
+    unstable_after: int
+
+    @property
+    def loses(self) -> bool:
+        """Whether the state is stable before and not after."""
+        return self.unstable_before == 0 < self.unstable_after
+
+    @property
+    def gains(self) -> bool:
+        """Whether the state is stable after and not before."""
+        return self.unstable_after == 0 < self.unstable_before
+
+
+@dataclass(frozen=True)
+class Branch(Generic[S]):
+    """States along a parameter, in the order in which they were followed.
+
+    Attributes
+    ----------
+    parameter : str
+        Name of the parameter.
+    values : ndarray of shape (m,)
+        Its values.
+    states : tuple of State
+        The states, m of them.
+    bifurcations : tuple of Bifurcation
+        Located in between.
+    complete : bool
+        Whether the branch came to the end that was asked for.
+    """
+
+    parameter: str
+    values: Array
+    states: tuple[S, ...]
+    bifurcations: tuple[Bifurcation[S], ...]
+    complete: bool

@@ -1,0 +1,182 @@
+"""Forces at which a state gains or loses stability, without a single run.
+
+- `onset`: the straight state is lost (a Hopf point);
+- `spinning-lost`: the spinning branch, followed up from its beginning, loses stability;
+- `flapping-gained`, `flapping-lost`: planar flapping becomes stable against all disturbances,
+  those out of its plane included, and ceases to be.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from undula.analysis.convergence import converge
+from undula.analysis.kinds import follow, kind_of
+from undula.analysis.nearby import found_again, quantities_of
+from undula.analysis.parameters import changed
+from undula.analysis.spinning import FORCE
+from undula.analysis.stability import critical_force
+from undula.analysis.states import Bifurcation, NotFound
+from undula.errors import InputError
+from undula.models.model import Model
+
+#: Forces up to which thresholds are looked for, in multiples of that of the onset.
+FARTHEST = 12.0
+# Branches of states begin a little above the onset, where their amplitude is no longer small.
+_BEGINNING = 1.02
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """A force at which stability changes.
+
+    Attributes
+    ----------
+    kind : str
+    value, error : float or None
+        The force [B/L^2], None if there is none, and its estimated error; without convergence
+        the error is that of locating it on the links as they are.
+    frequency : float or None
+        Of the state there [cycles per T].
+    second_frequency : float or None
+        Of the disturbance that turns [cycles per T].
+    bifurcation : str or None
+        The kind of bifurcation.
+    reason : str or None
+        Why there is no value.
+    at : Bifurcation or None
+        The bifurcation itself, on the finest links.
+    """
+
+    kind: str
+    value: float | None
+    error: float | None = None
+    frequency: float | None = None
+    second_frequency: float | None = None
+    bifurcation: str | None = None
+    reason: str | None = None
+    at: Bifurcation[Any] | None = None
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Which bifurcation of which kind of state a threshold is."""
+
+    kind: str
+    is_it: Callable[[Bifurcation[Any]], bool]
+
+
+_SEARCHES: Mapping[str, _Search] = {
+    "spinning-lost": _Search("spinning", lambda one: one.loses),
+    "flapping-gained": _Search("flapping", lambda one: one.gains),
+    "flapping-lost": _Search("flapping", lambda one: one.loses),
+}
+THRESHOLDS: tuple[str, ...] = ("onset", *_SEARCHES)
+
+
+def threshold(
+    model: Model, kind: str, *, converged: bool = False, near: Threshold | None = None
+) -> Threshold:
+    """Return the force at which a state gains or loses stability.
+
+    Parameters
+    ----------
+    model : Model
+        Its own force does not matter.
+    kind : {"onset", "spinning-lost", "flapping-gained", "flapping-lost"}
+    converged : bool
+        Whether to extrapolate to many links.
+    near : Threshold, optional
+        The same threshold of a similar model, to begin at.
+
+    Raises
+    ------
+    InputError
+        The kind is none of these, or the model has no limit of many links.
+    """
+    if kind not in THRESHOLDS:
+        raise InputError(f"threshold {kind!r} is not known; take {', '.join(THRESHOLDS)}")
+    if kind == "onset":
+        return _onset(model)
+    guess = near.at if near else None
+    if not converged:
+        found = _search(model, kind, guess)
+        if isinstance(found, NotFound):
+            return Threshold(kind, None, reason=found.reason)
+        return _threshold(kind, found, found.value, found.error, found.frequency)
+    limit = converge(
+        model, lambda finer, coarser: _search(finer, kind, coarser or guess), quantities_of
+    )
+    if isinstance(limit, NotFound):
+        return Threshold(kind, None, reason=limit.reason)
+    values = limit.values
+    return _threshold(
+        kind, limit.finest, values["value"], limit.errors["value"], values["frequency"]
+    )
+
+
+def threshold_curve(
+    model: Model,
+    kind: str,
+    parameter: str,
+    values: Sequence[float],
+    *,
+    converged: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> tuple[Threshold, ...]:
+    """Return a threshold at each value of a second parameter, each begun at the one before.
+
+    Parameters
+    ----------
+    model, kind, converged
+        As in `threshold`.
+    parameter : str
+        Name of the parameter, such as "model.drag_ratio"; the force is none.
+    values : sequence of float
+    progress : callable, optional
+        Called with the number of values done and of all.
+    """
+    if parameter == FORCE:
+        raise InputError(f"thresholds are values of {FORCE}; take another parameter for a curve")
+    models = [changed(model, parameter, value) for value in values]
+    found: list[Threshold] = []
+    for done, each in enumerate(models, start=1):
+        near = found[-1] if found and found[-1].value is not None else None
+        found.append(threshold(each, kind, converged=converged, near=near))
+        if progress:
+            progress(done, len(models))
+    return tuple(found)
+
+
+def _onset(model: Model) -> Threshold:
+    onset = critical_force(model, later=0)
+    if onset.hopf is None:
+        return Threshold("onset", None, reason=str(onset))
+    hopf = onset.hopf
+    return Threshold("onset", hopf.force, hopf.error, hopf.frequency, bifurcation="Hopf")
+
+
+def _threshold(
+    kind: str, at: Bifurcation[Any], value: float, error: float, frequency: float
+) -> Threshold:
+    return Threshold(kind, value, error, frequency, at.second_frequency, at.kind, at=at)
+
+
+def _search(model: Model, kind: str, near: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
+    search = _SEARCHES[kind]
+    if near is not None:
+        found = found_again(near, model, FORCE, search.is_it)
+        if not isinstance(found, NotFound):
+            return found
+    onset = critical_force(model, method="discrete", later=0)
+    if onset.force is None:
+        return NotFound(str(onset))
+    start, end = _BEGINNING * onset.force, FARTHEST * onset.force
+    begun = kind_of(search.kind).find(changed(model, FORCE, start))
+    if isinstance(begun, NotFound):
+        return begun
+    branch = follow(begun, FORCE, end, enough=search.is_it)
+    for bifurcation in branch.bifurcations:
+        if search.is_it(bifurcation):
+            return bifurcation
+    return NotFound(f"no such change between force {start:.6g} and {branch.values[-1]:.6g}")

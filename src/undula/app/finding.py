@@ -1,0 +1,122 @@
+"""`undula find`: a state solved for, in plain JSON types and for people."""
+
+from typing import Any
+
+from undula.analysis.convergence import Converged
+from undula.analysis.kinds import converged, kind_of, with_error
+from undula.analysis.observables import Range
+from undula.analysis.states import Flapping, NotFound, Spinning
+from undula.app.answers import Told
+from undula.app.run_text import with_error as with_digits
+from undula.models.model import Model
+
+#: Units of what a state tells, by the beginning of its name.
+_UNITS = {
+    "frequency": "cycles per T",
+    "bending_energy": "B/L",
+    "tip_radius": "L",
+    "tip_height": "L",
+    "leading_rate": "/T",
+}
+
+
+def find(model: Model, kind: str, *, converge: bool, title: str) -> Told:
+    """Solve for a state; in the limit of many links if asked to.
+
+    Raises
+    ------
+    InputError
+        There is no such kind, or the model has no limit of many links.
+    """
+    found = converged(model, kind) if converge else kind_of(kind).find(model)
+    if isinstance(found, NotFound):
+        return not_found(found)
+    answer = (
+        _limit_answer(found) if isinstance(found, Converged) else state_answer(with_error(found))
+    )
+    return Told(answer, _text(title, answer))
+
+
+def not_found(reason: NotFound) -> Told:
+    """Return the answer that there is no state, with the advice what to try."""
+    answer = {"status": "not found", "reason": reason.reason, "residual": reason.residual}
+    return Told(answer, f"not found: {reason.reason}")
+
+
+def state_answer(state: Spinning | Flapping) -> dict[str, Any]:
+    """Return a state in plain JSON types."""
+    shared = {
+        "status": "done",
+        "force": state.force,
+        "links": state.model.links,
+        "frequency": state.frequency,
+        "error": state.error,
+        "stable": state.stable,
+        "leading_rate": state.leading_rate,
+        "residual": state.residual,
+        "power_balance_error": state.power_balance_error,
+    }
+    if isinstance(state, Spinning):
+        return shared | {
+            "kind": "spinning",
+            "bending_energy": state.bending_energy,
+            "tip_radius": state.tip_radius,
+            "tip_height": state.tip_height,
+            "trivial_rate": abs(state.trivial),
+        }
+    return shared | {
+        "kind": "flapping",
+        "bending_energy": _range(state.energy),
+        "tip_radius": _range(state.tip_radius),
+        "tip_height": _range(state.tip_height),
+        "leading_rate_in_plane": state.leading_rate_in_plane,
+        "leading_rate_out_of_plane": state.leading_rate_out_of_plane,
+        "trivial_multiplier_error": max(state.trivial),
+    }
+
+
+def _limit_answer(limit: Converged[Any]) -> dict[str, Any]:
+    """Return what a state converges to, named as for a single number of links."""
+    answer = state_answer(limit.finest)
+    for name, value in limit.values.items():
+        owner, _, part = name.rpartition("_")
+        if part in ("min", "max", "mean"):
+            answer[owner] = answer[owner] | {part: value}
+        else:
+            answer[name] = value
+    rates = [value for name, value in limit.values.items() if name.startswith("leading_rate")]
+    return answer | {
+        "leading_rate": max(rates),
+        "stable": max(rates) < 0.0,
+        "links": list(limit.links),
+        "error": limit.errors["frequency"],
+        "errors": dict(limit.errors),
+    }
+
+
+def _range(values: Range) -> dict[str, float]:
+    return {"min": values.min, "max": values.max, "mean": values.mean}
+
+
+def _text(title: str, answer: dict[str, Any]) -> str:
+    errors = answer.get("errors", {"frequency": answer["error"]})
+    word = "stable" if answer["stable"] else "unstable"
+    lines = [f"{title}: {answer['kind']}, {word}"]
+    for name, value in answer.items():
+        unit = next((unit for start, unit in _UNITS.items() if name.startswith(start)), None)
+        if unit is None or value is None:
+            continue
+        if isinstance(value, dict):
+            parts = [
+                f"{part} {with_digits(one, errors.get(f'{name}_{part}'))}"
+                for part, one in value.items()
+            ]
+            said = ", ".join(parts)
+        else:
+            said = with_digits(value, errors.get(name))
+        lines.append(f"  {name.replace('_', ' '):<26} {said} {unit}")
+    links = answer["links"]
+    many = f"extrapolated from {', '.join(map(str, links))}" if isinstance(links, list) else links
+    lines.append(f"  {'links':<26} {many}")
+    lines.append(f"  {'residual':<26} {answer['residual']:.1g}")
+    return "\n".join(lines)

@@ -1,0 +1,151 @@
+"""`undula follow`: a branch of states along a parameter, in plain JSON types and for people."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from undula.analysis.convergence import Converged
+from undula.analysis.kinds import follow, kind_of
+from undula.analysis.nearby import limit_of
+from undula.analysis.parameters import changed, value_of
+from undula.analysis.states import Bifurcation, Branch, NotFound
+from undula.analysis.straight_branch import StraightBranch, follow_straight
+from undula.app.answers import Told
+from undula.app.finding import not_found, state_answer
+from undula.app.progress import approached
+from undula.errors import InputError
+from undula.models.model import Model
+
+#: What is told of each point of a branch.
+_KEPT = (
+    "frequency",
+    "bending_energy",
+    "tip_radius",
+    "tip_height",
+    "stable",
+    "leading_rate",
+    "leading_rate_in_plane",
+    "leading_rate_out_of_plane",
+)
+
+
+@dataclass(frozen=True)
+class Way:
+    """A parameter, and the values at which to begin and to end."""
+
+    parameter: str
+    start: float
+    end: float
+
+
+def follow_along(
+    model: Model, kind: str, way: Way, *, converge: bool, title: str
+) -> tuple[Told, Branch[Any] | StraightBranch | None]:
+    """Follow a state; return the answer, and the branch unless there is no state to begin at.
+
+    Raises
+    ------
+    InputError
+        There is no such kind or parameter, or a value is out of its range.
+    """
+    value_of(model, way.parameter)
+    if kind == "straight":
+        if converge:
+            raise InputError("the straight state is converged already; leave --converge out")
+        straight = follow_straight(model, way.parameter, way.start, way.end)
+        return _told(straight_answer(straight), f"{title}: straight state"), straight
+    found = kind_of(kind).find(changed(model, way.parameter, way.start))
+    if isinstance(found, NotFound):
+        return not_found(found), None
+    with approached(f"following {kind}", way.start, way.end) as tell:
+        branch = follow(found, way.parameter, way.end, progress=tell)
+    return _told(branch_answer(branch, converge=converge), f"{title}: {kind}"), branch
+
+
+def branch_answer(branch: Branch[Any], *, converge: bool) -> dict[str, Any]:
+    """Return a branch in plain JSON types, its bifurcations in the limit of many links if asked."""
+    points = []
+    for value, state in zip(branch.values, branch.states, strict=True):
+        told = state_answer(state)
+        kept = {key: told[key] for key in _KEPT if key in told}
+        points.append({branch.parameter: float(value)} | kept)
+    return {
+        "status": "done" if branch.complete else "stopped early",
+        "parameter": branch.parameter,
+        "points": points,
+        "bifurcations": [
+            _bifurcation_answer(branch.parameter, one, converge=converge)
+            for one in branch.bifurcations
+        ],
+    }
+
+
+def straight_answer(branch: StraightBranch) -> dict[str, Any]:
+    """Return the straight state along a parameter in plain JSON types."""
+    columns = zip(branch.values, branch.rates, branch.frequencies, strict=True)
+    return {
+        "status": "done",
+        "parameter": branch.parameter,
+        "points": [
+            {
+                branch.parameter: float(value),
+                "frequency": float(frequency),
+                "stable": bool(rate < 0.0),
+                "leading_rate": float(rate),
+            }
+            for value, rate, frequency in columns
+        ],
+        "bifurcations": [
+            {"kind": "Hopf", "value": value, branch.parameter: value, "frequency": frequency}
+            for value, frequency in branch.hopf
+        ],
+    }
+
+
+def _bifurcation_answer(parameter: str, one: Bifurcation[Any], *, converge: bool) -> dict[str, Any]:
+    answer = {
+        "kind": one.kind,
+        "value": one.value,
+        parameter: one.value,
+        "error": one.error,
+        "frequency": one.frequency,
+        "second_frequency": one.second_frequency,
+        "stability": "lost" if one.loses else "gained" if one.gains else "unchanged",
+    }
+    limit = limit_of(one, parameter) if converge else None
+    if isinstance(limit, Converged):
+        answer |= dict(limit.values) | {
+            parameter: limit.values["value"],
+            "error": limit.errors["value"],
+            "links": list(limit.links),
+        }
+    elif limit is not None:
+        answer |= {"not_converged": limit.reason}
+    return answer
+
+
+def _told(answer: dict[str, Any], title: str) -> Told:
+    name = answer["parameter"]
+    first, last = answer["points"][0], answer["points"][-1]
+    lines = [
+        f"{title} along {name} from {first[name]:.6g} to {last[name]:.6g},"
+        f" {len(answer['points'])} points, {answer['status']}",
+        f"  {name:>16} {'frequency':>12} {'leading rate':>13}",
+        *(
+            f"  {point[name]:>16.8g} {point['frequency']:>12.7g} {point['leading_rate']:>13.5g}"
+            f"  {'stable' if point['stable'] else 'unstable'}"
+            for point in answer["points"]
+        ),
+        *(_bifurcation_line(one) for one in answer["bifurcations"]),
+    ]
+    return Told(answer, "\n".join(lines))
+
+
+def _bifurcation_line(one: dict[str, Any]) -> str:
+    error = f" ± {one['error']:.1g}" if "error" in one else ""
+    second = one.get("second_frequency")
+    beside = f", second frequency {second:.6g}" if second is not None else ""
+    stability = f", stability {one['stability']}" if "stability" in one else ""
+    return (
+        f"  {one['kind']} at {one['value']:.10g}{error}: {one['frequency']:.7g} cycles per T"
+        f"{beside}{stability}"
+    )

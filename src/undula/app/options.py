@@ -1,0 +1,26 @@
+"""Arguments and options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Result = Annotated[Path, typer.Argument(metavar="RESULT.nc", help="A file that undula run wrote.")]
+Input = Annotated[
+    Path | None, typer.Argument(metavar="[FILE.toml]", help="Input; without it, the defaults.")
+]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a key, as in load.force=80."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Answer with exactly one JSON object.")]
+Plot = Annotated[Path | None, typer.Option(metavar="FILE", help="Figure: .png, .pdf or .svg.")]
+Converge = Annotated[
+    bool, typer.Option("--converge", help="Extrapolate to many links, with the error.")
+]
+NoMovie = Annotated[bool, typer.Option("--no-movie", help="Make no movie.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what exists.")]
+Budget = Annotated[
+    float | None,
+    typer.Option(metavar="SECONDS", help="Stop after so long, with what there is (exit status 3)."),
+]

@@ -1,0 +1,35 @@
+"""Progress of tasks that count what they have done, or approach a value, with a time estimate."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from undula.app.meter import meter
+from undula.app.pace import duration
+
+
+@contextmanager
+def counted(task: str) -> Iterator[Callable[[int, int], None]]:
+    """Yield a function to be called with the number of things done and of all."""
+    began = time.monotonic()
+    with meter(task) as show:
+
+        def tell(done: int, total: int) -> None:
+            to_go = (time.monotonic() - began) * (total - done) / done
+            show(done / total, f"{done} of {total}, {duration(to_go)} to go")
+
+        yield tell
+
+
+@contextmanager
+def approached(task: str, start: float, end: float) -> Iterator[Callable[[float], None]]:
+    """Yield a function to be called with the value that was reached on the way to `end`."""
+    began = time.monotonic()
+    with meter(task) as show:
+
+        def tell(value: float) -> None:
+            part = min(1.0, max(1e-3, (value - start) / (end - start)))
+            to_go = (time.monotonic() - began) * (1.0 - part) / part
+            show(part, f"at {value:.6g} of {end:.6g}, about {duration(to_go)} to go")
+
+        yield tell

@@ -1,0 +1,164 @@
+"""The commands that answer by solving instead of running: stability, find, follow, threshold."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from undula.app.options import Changes, Converge, Input, Json, Overwrite, Plot
+from undula.errors import InputError
+
+
+def stability(
+    file: Input = None,
+    changes: Changes = None,
+    forces: Annotated[
+        str | None,
+        typer.Option(metavar="RANGE", help="Leading eigenvalue at these forces, as 0:60:121."),
+    ] = None,
+    along: Annotated[
+        str | None,
+        typer.Option(metavar="KEY=RANGE", help="Along a parameter, as load.slope=-1:1:41."),
+    ] = None,
+    method: Annotated[
+        str | None,
+        typer.Option(help="spectral, modes or discrete; short for --set stability.method=."),
+    ] = None,
+    plot: Plot = None,
+    overwrite: Overwrite = False,
+    as_json: Json = False,
+) -> int:
+    """Tell when the straight filament begins to ring and to oscillate, and how fast.
+
+    With --forces the leading eigenvalue at each force, with --along thresholds along a parameter,
+    with both a map.
+    """
+    from undula.app.answers import DONE, reply
+    from undula.app.stability import Question, ask
+    from undula.studies.ranges import parse_axis, parse_values
+    from undula.studies.spec import read_stability_input
+
+    given = [*(changes or ()), *([f"stability.method={method}"] if method is not None else [])]
+    question = Question(
+        wanted=read_stability_input(file, given),
+        forces=None if forces is None else parse_values("--forces", forces),
+        along=None if along is None else parse_axis("--along", along),
+    )
+    _claim_figure(plot, overwrite=overwrite)
+    told = ask(question, plot)
+    reply(told.answer, told.text, as_json=as_json)
+    return DONE
+
+
+def find(
+    kind: Annotated[str, typer.Argument(metavar="KIND", help="spinning or flapping.")],
+    file: Input = None,
+    changes: Changes = None,
+    converge: Converge = False,
+    as_json: Json = False,
+) -> int:
+    """Solve for a spinning or a flapping state, and tell whether it is stable."""
+    from undula.app import finding
+    from undula.app.answers import DONE, reply
+    from undula.studies.build import build_model
+    from undula.studies.spec import read_filament_input
+
+    wanted = read_filament_input(file, changes or ())
+    told = finding.find(build_model(wanted), kind, converge=converge, title=wanted.load_text)
+    reply(told.answer, told.text, as_json=as_json)
+    return DONE
+
+
+def follow(
+    kind: Annotated[str, typer.Argument(metavar="KIND", help="straight, spinning or flapping.")],
+    along: Annotated[
+        str, typer.Option(metavar="KEY=START:END", help="The way, as load.force=38:300.")
+    ],
+    file: Input = None,
+    changes: Changes = None,
+    converge: Converge = False,
+    plot: Plot = None,
+    runs: Annotated[
+        list[Path] | None,
+        typer.Option("--run", metavar="RESULT.nc", help="A stored run to draw as a dot."),
+    ] = None,
+    overwrite: Overwrite = False,
+    as_json: Json = False,
+) -> int:
+    """Follow a state along a parameter, with its stability and its bifurcations."""
+    from undula.analysis.straight_branch import StraightBranch
+    from undula.app.answers import DONE, reply
+    from undula.app.following import Way, follow_along
+    from undula.studies.build import build_model
+    from undula.studies.ranges import parse_way
+    from undula.studies.spec import read_filament_input
+
+    wanted = read_filament_input(file, changes or ())
+    way = Way(*parse_way("--along", along))
+    _claim_figure(plot, overwrite=overwrite)
+    title = wanted.load.tell({way.parameter.removeprefix("load.")})
+    told, branch = follow_along(build_model(wanted), kind, way, converge=converge, title=title)
+    if plot is not None and branch is not None:
+        from undula.app.drawing import draw_branch, draw_straight
+
+        if isinstance(branch, StraightBranch):
+            draw_straight(branch, plot, title=title)
+        else:
+            draw_branch(branch, runs or (), plot, title=title)
+    reply(told.answer, told.text, as_json=as_json)
+    return DONE
+
+
+def threshold(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME", help="onset, spinning-lost, flapping-gained or flapping-lost."
+        ),
+    ],
+    file: Input = None,
+    changes: Changes = None,
+    along: Annotated[
+        str | None,
+        typer.Option(metavar="KEY=RANGE", help="Along a parameter, as model.drag_ratio=1:3:9."),
+    ] = None,
+    converge: Converge = False,
+    plot: Plot = None,
+    overwrite: Overwrite = False,
+    as_json: Json = False,
+) -> int:
+    """Find the force at which a state gains or loses stability, also along a parameter."""
+    from undula.app.answers import DONE, reply
+    from undula.app.thresholding import tell_threshold, tell_thresholds
+    from undula.studies.build import build_model
+    from undula.studies.ranges import parse_axis
+    from undula.studies.spec import read_filament_input
+
+    wanted = read_filament_input(file, changes or ())
+    model = build_model(wanted)
+    if along is None:
+        if plot is not None:
+            raise InputError("--plot draws a curve; give --along as well")
+        title = wanted.load.tell({"force"})
+        told = tell_threshold(model, name, converge=converge, title=title)
+    else:
+        axis = parse_axis("--along", along)
+        _claim_figure(plot, overwrite=overwrite)
+        title = wanted.load.tell({"force", axis[0].removeprefix("load.")})
+        told, found = tell_thresholds(model, name, axis, converge=converge, title=title)
+        if plot is not None:
+            from undula.app.drawing import draw_thresholds
+
+            draw_thresholds(name, axis, found, plot, title=title)
+    reply(told.answer, told.text, as_json=as_json)
+    return DONE
+
+
+def _claim_figure(path: Path | None, *, overwrite: bool) -> None:
+    """Refuse a figure that could not be written, before anything is computed."""
+    if path is not None:
+        from undula.app.drawing import check_figure_name
+        from undula.studies.whole_file import claim_output
+
+        check_figure_name("--plot", path)
+        claim_output(path, overwrite=overwrite)

@@ -1,0 +1,85 @@
+"""The linked rod as a differential equation with constraints, for solvers of states.
+
+It implements `undula.numerics.problem.Equations` on top of the compiled residual and its exact
+derivative.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from undula.arrays import Array
+from undula.compiled import entry
+from undula.models.rod import Rod
+from undula.models.rod_matrix import exact_derivative
+from undula.numerics.system import generator, residual, weigh
+
+
+@entry
+def balance(system: Any, y: Any, w: Any, out: Any) -> None:
+    """Write the residual R(x) w - f and the constraints to out (n,)."""
+    residual(system, y, w, 1.0, out)
+
+
+@entry
+def turning(system: Any, y: Any, out: Any, dragged: Any) -> None:
+    """Write S x and R(x) S x, for the velocity of a unit rate of turning, to out and dragged."""
+    generator(system, y, out)
+    weigh(system, y, out, dragged)
+
+
+@dataclass(frozen=True)
+class RodFlow:
+    """The equations of a linked rod in its vector y (n,) of positions and multipliers."""
+
+    system: Rod
+
+    @property
+    def half_bandwidth(self) -> int:
+        """Half-bandwidth of the matrices."""
+        return 3 * self._stride - 1
+
+    @property
+    def _stride(self) -> int:
+        return int(self.system.dimension) + 1
+
+    @cached_property
+    def differential(self) -> Any:
+        """True at positions, False at multipliers, shape (n,)."""
+        return np.arange(self.system.joint.size * self._stride) % self._stride < self._stride - 1
+
+    def residual(self, y: Array, w: Array) -> Array:
+        """Return R(x) w - f(x, z) and g(x, z), shape (n,), for velocities w (n,)."""
+        out = np.empty(y.size)
+        balance(self.system, y, w, out)
+        return out
+
+    def parts(self, y: Array, w: Array, turn: float) -> tuple[Array, Array]:
+        """Return bands (n, 2 b + 1) of d residual / dy, plus `turn` R S, and of R."""
+        whole = np.empty((y.size, 2 * self.half_bandwidth + 1))
+        drag, moves = np.empty_like(whole), self.differential
+        exact_derivative(self.system, y, w, 1.0, turn, whole)
+        exact_derivative(self.system, y, np.zeros(y.size), 0.0, 0.0, drag)
+        drag[~moves] = 0.0
+        whole -= drag
+        return whole, drag
+
+    def turning(self, y: Array) -> tuple[Array, Array]:
+        """Return S x and R(x) S x, each of shape (n,)."""
+        out, dragged = np.empty(y.size), np.empty(y.size)
+        turning(self.system, y, out, dragged)
+        return out, dragged
+
+    def displacements(self, y: Array) -> Array:
+        """Return an orthonormal basis (n, k) of small displacements that keep rigid lengths."""
+        moves, d, m = self.differential, self._stride - 1, self._stride
+        if self.system.extensible:
+            return np.eye(y.size)[:, moves]
+        links = np.diff(y.reshape(-1, m)[:, :d], axis=0, prepend=0.0)
+        count = links.shape[0]
+        raw = np.zeros((count, m, count, d - 1))
+        for k, across in enumerate(np.linalg.svd(links[:, None, :])[2][:, 1:, :]):
+            raw[k:, :d, k, :] = across.T
+        return np.asarray(np.linalg.qr(raw.reshape(y.size, -1))[0])
