@@ -167,7 +167,9 @@ def test_the_threshold_of_extensible_links_tends_to_the_rigid_one_with_their_sti
     np.testing.assert_allclose(slopes, -1.0, rtol=0.0, atol=0.01)
 
 
-@pytest.mark.parametrize(("stiffness", "loses"), [(50.0, False), (200.0, True), (1e3, True)])
+@pytest.mark.parametrize(
+    ("stiffness", "loses"), [(50.0, False), (75.0, False), (200.0, True), (1e3, True)]
+)
 def test_very_soft_links_are_searched_no_further_than_they_have_a_length(
     stiffness: float, loses: bool
 ) -> None:

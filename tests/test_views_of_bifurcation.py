@@ -14,8 +14,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from refusal import complaint
+from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.observables import Range
-from undula.analysis.states import Bifurcation, Branch, Flapping, Spinning
+from undula.analysis.states import Flapping, Spinning
 from undula.models.filament import Filament
 from undula.models.loads import TipLoad
 from undula.views import bifurcation_diagram, threshold_curves

@@ -7,7 +7,7 @@ from typing import Any, Generic
 
 import numpy as np
 
-from undula.analysis.states import Bifurcation, Branch, S, State
+from undula.analysis.branch_records import Bifurcation, Branch, S, State
 from undula.arrays import Array
 from undula.numerics.continuation import Point, Steps, follow, located, with_tangent
 from undula.numerics.problem import Problem

@@ -4,12 +4,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, follow_branch
 from undula.analysis.convergence import Converged, converge
 from undula.analysis.flapping import find_flapping, flapping_family, flapping_unknowns
 from undula.analysis.parameters import value_of
 from undula.analysis.spinning import find_spinning, spinning_family, spinning_unknowns
-from undula.analysis.states import Bifurcation, Branch, Flapping, NotFound, Spinning
+from undula.analysis.states import Flapping, NotFound, Spinning
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model

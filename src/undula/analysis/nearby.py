@@ -3,10 +3,11 @@
 from collections.abc import Callable
 from typing import Any
 
+from undula.analysis.branch_records import Bifurcation
 from undula.analysis.convergence import Converged, converge
 from undula.analysis.kinds import follow, kind_named
 from undula.analysis.parameters import changed
-from undula.analysis.states import Bifurcation, NotFound
+from undula.analysis.states import NotFound
 from undula.models.model import Model
 
 # It is looked for within this share of its value, on either side.

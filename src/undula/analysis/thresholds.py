@@ -10,13 +10,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from undula.analysis.branch_records import Bifurcation
 from undula.analysis.convergence import converge
 from undula.analysis.kinds import follow, kind_of
 from undula.analysis.nearby import found_again, quantities_of
 from undula.analysis.parameters import changed
 from undula.analysis.spinning import FORCE
 from undula.analysis.stability import critical_force
-from undula.analysis.states import Bifurcation, NotFound
+from undula.analysis.states import NotFound
 from undula.errors import InputError
 from undula.models.model import Model
 

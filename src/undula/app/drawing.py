@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from undula.analysis.branch_records import Branch
 from undula.analysis.linear_results import GrowthCurve
-from undula.analysis.states import Branch
 from undula.analysis.straight_branch import StraightBranch
 from undula.analysis.thresholds import Threshold
 from undula.app.meter import meter

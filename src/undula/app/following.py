@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from typing import Any
 
+from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.convergence import Converged
 from undula.analysis.kinds import follow, kind_of
 from undula.analysis.nearby import limit_of
 from undula.analysis.parameters import changed, value_of
-from undula.analysis.states import Bifurcation, Branch, NotFound
+from undula.analysis.states import NotFound
 from undula.analysis.straight_branch import StraightBranch, follow_straight
 from undula.app.answers import Told
 from undula.app.finding import not_found, state_answer

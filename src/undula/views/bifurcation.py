@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from undula.analysis.states import Branch
+from undula.analysis.branch_records import Branch
 from undula.errors import InputError
 from undula.views import style
 from undula.views.labels_above import Label, label_above

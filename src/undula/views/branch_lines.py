@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from undula.analysis.states import Bifurcation, Branch, State
+from undula.analysis.branch_records import Bifurcation, Branch, State
 from undula.arrays import Array
 
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from undula.analysis.states import Branch, Flapping, Spinning
+from undula.analysis.branch_records import Branch
+from undula.analysis.states import Flapping, Spinning
 from undula.arrays import Array
 from undula.views import style
 from undula.views.branch_lines import BranchLine, branch_line
