@@ -57,6 +57,8 @@ def follow_branch(
     steps: Steps,
     progress: Progress | None = None,
     enough: Callable[[Bifurcation[S]], bool] = lambda _: False,
+    start: Point | None = None,
+    least: float | None = None,
 ) -> Branch[S]:
     """Follow a branch from a solution towards a value of the parameter.
 
@@ -72,14 +74,19 @@ def follow_branch(
         Called with each value that was reached.
     enough : callable, optional
         Tells of a bifurcation whether the branch may end behind it.
+    start : Point, optional
+        The same solution with the direction in which to begin, for a branch that is born sideways;
+        without it the branch is followed towards `to`.
+    least : float, optional
+        How far the branch may go back beyond where it began.
     """
     upwards = np.sign(to - p) or 1.0
     problem = family.problem.referred_to(u)
     flat = Point(u, p, np.zeros_like(u), upwards * family.scale)
-    point = with_tangent(problem, flat, family.scale)
+    point = start or with_tangent(problem, flat, family.scale)
     states, values = [family.judge(problem, u, p)], [p]
     found: list[Bifurcation[S]] = []
-    ends = min(p, to), max(p, to)
+    ends = min(p, to, p if least is None else least), max(p, to)
     for reached in follow(problem, point, steps, ends):
         if progress:
             progress(reached.p)
@@ -122,22 +129,23 @@ class _Interval(Generic[S]):
 
     def _located(self, first: int, last: int) -> Iterator[tuple[Point, str, int | None, int]]:
         """Yield points, kinds, critical indices, and how many exponents change their sign."""
-        index, high = min(first, last), max(first, last)
+        changing = list(range(min(first, last), max(first, last)))
         if self.before.tangent_p * self.after.tangent_p < 0.0:
-            # At a fold one real exponent changes its sign with the parameter's direction.
-            several = (high - index) % 2
             at = self._zero_of(lambda point: point.tangent_p)
             if at is not None:
-                yield at, "fold", None, several
-            index += several
-        while index < high:
+                # Here one real exponent changes its sign with the parameter's direction.
+                own = int(np.argmin(np.abs(self._state(at).exponents)))
+                yield at, "fold", None, changing.count(own)
+                changing = [index for index in changing if index != own]
+        while changing:
+            index = changing[0]
             at = self._zero_of(partial(self._rate, index))
             if at is None:
                 return
             state = self._state(at)
             several = 2 if _is_pair(state, index) else 1
             yield at, self.family.name(state, index), index, several
-            index += several
+            changing = changing[several:]
 
     def _zero_of(self, test: Callable[[Point], float]) -> Point | None:
         scale = self.family.scale

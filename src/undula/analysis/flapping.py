@@ -5,10 +5,14 @@ has to be solved for (`undula.numerics.orbits`). Disturbances in the plane and o
 mix: the former come with the solution, the latter from the equations in space, linearised along it.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from undula.analysis.branches import Family
 from undula.analysis.integrate import integrate
+from undula.analysis.linearisations import linearised
+from undula.analysis.onset import first_pair
 from undula.analysis.parameters import changed, value_of
 from undula.analysis.run import Run
 from undula.analysis.states import Flapping, NotFound
@@ -16,6 +20,7 @@ from undula.arrays import Array, ComplexArray
 from undula.models.model import Model
 from undula.models.starts import from_state, planar
 from undula.numerics.closure import Closure
+from undula.numerics.continuation import Point
 from undula.numerics.floquet import floquet
 from undula.numerics.flow import linearised_flow
 from undula.numerics.orbits import (
@@ -67,17 +72,44 @@ def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping
 
 def flapping_family(state: Flapping, parameter: str, scale: float) -> Family[Flapping]:
     """Return the family of a planar beat along a parameter."""
-
-    def judge(problem: OrbitProblem, u: Array, p: float) -> Flapping:
-        orbit = orbit_at(problem, u, p)
-        assert orbit is not None  # it was solved for
-        return _judged(changed(state.model, parameter, p), orbit)
-
     shooting = _shooting(state.model, parameter)
     start = shooting.shoot(flapping_unknowns(state), value_of(state.model, parameter))
     assert isinstance(start, Shot)  # the state was found so
     problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
-    return Family(parameter, problem, judge, _named, scale)
+    return Family(parameter, problem, flapping_judge(state.model, parameter), _named, scale)
+
+
+def flapping_judge(
+    model: Model, parameter: str
+) -> Callable[[OrbitProblem, Array, float], Flapping]:
+    """Return the function from a problem along a parameter and its solution to the state."""
+
+    def judge(problem: OrbitProblem, u: Array, p: float) -> Flapping:
+        orbit = orbit_at(problem, u, p)
+        assert orbit is not None  # it was solved for
+        return _judged(changed(model, parameter, p), orbit)
+
+    return judge
+
+
+def flapping_start(model: Model) -> tuple[OrbitProblem, Point] | None:
+    """Return the problem in the force and the Hopf point at which the branch begins.
+
+    The tangent there is the critical mode, swinging: x = Re c(s) exp(i omega t).
+    """
+    flat = model.with_(confined=True)
+    pair = first_pair(linearised(flat, "discrete"))
+    if pair is None:
+        return None
+    straight = changed(flat, FORCE, pair.p).straight()
+    mode = pair.vector / pair.vector[-1]
+    velocity, tangent = np.zeros(straight.size), np.zeros(straight.size + 1)
+    tangent[:-1:2], velocity[::2] = mode.real, -pair.omega * mode.imag
+    half = np.pi / pair.omega
+    reference = Reference(straight, velocity, np.zeros(straight.size), half)
+    problem = OrbitProblem(_shooting(model, FORCE), reference)
+    tangent /= np.sqrt(problem.weights @ tangent**2)
+    return problem, Point(np.append(straight, half), pair.p, tangent, 0.0)
 
 
 def flapping_unknowns(state: Flapping) -> Array:
@@ -151,13 +183,13 @@ def _across(model: Model, orbit: Orbit) -> Array:
     links = model.links
     columns = np.zeros((4 * links, links))
     columns[1::4] = np.eye(links)
-    stages = _in_space(shot.flow.stages)
-    change = linearised_flow(model.equations, _in_space(shot.y), stages, shot.duration, columns)
+    stages = in_space(shot.flow.stages)
+    change = linearised_flow(model.equations, in_space(shot.y), stages, shot.duration, columns)
     assert change is not None  # the stages solve equations that are regular in the plane
     return change.by_start[1::4]
 
 
-def _in_space(y: Array) -> Array:
+def in_space(y: Array) -> Array:
     """Return vectors (..., 3 N) of the planar equations as those (..., 4 N) in space."""
     by_node = y.reshape(*y.shape[:-1], -1, 3)
     whole = np.zeros((*by_node.shape[:-1], 4))

@@ -7,19 +7,34 @@ from typing import Any, Literal
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, follow_branch
 from undula.analysis.convergence import Converged, converge
-from undula.analysis.flapping import find_flapping, flapping_family, flapping_unknowns
+from undula.analysis.flapping import (
+    find_flapping,
+    flapping_family,
+    flapping_judge,
+    flapping_start,
+    flapping_unknowns,
+)
 from undula.analysis.parameters import value_of
-from undula.analysis.spinning import find_spinning, spinning_family, spinning_unknowns
+from undula.analysis.spinning import (
+    FORCE,
+    find_spinning,
+    spinning_family,
+    spinning_judge,
+    spinning_start,
+    spinning_unknowns,
+)
 from undula.analysis.states import Flapping, NotFound, Spinning
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model
-from undula.numerics.continuation import Steps
+from undula.numerics.continuation import Point, Steps, advance
 
 KindName = Literal["spinning", "flapping"]
 
 # A branch is stepped along in parts of the way that it is asked to go.
 _PARTS = 8.0
+# Arclength between a Hopf point and the first point of a branch.
+_AWAY = 0.03
 
 
 @dataclass(frozen=True)
@@ -36,12 +51,18 @@ class Kind:
         From a state to the unknowns of its family.
     quantities : callable
         From a state to the numbers that are worth converging.
+    start : callable
+        From a model to the problem in the force and the Hopf point at which states begin, or None.
+    judge : callable
+        From a model and a parameter to the function that judges solutions of such a problem.
     """
 
     find: Callable[..., Any]
     family: Callable[[Any, str, float], Family[Any]]
     unknowns: Callable[[Any], Array]
     quantities: Callable[[Any], Mapping[str, float]]
+    start: Callable[[Model], tuple[Any, Point] | None]
+    judge: Callable[[Model, str], Callable[[Any, Array, float], Any]]
 
 
 def _of_spinning(state: Spinning) -> dict[str, float]:
@@ -72,8 +93,22 @@ def _of_flapping(state: Flapping) -> dict[str, float]:
 
 
 KINDS: Mapping[str, Kind] = {
-    "spinning": Kind(find_spinning, spinning_family, spinning_unknowns, _of_spinning),
-    "flapping": Kind(find_flapping, flapping_family, flapping_unknowns, _of_flapping),
+    "spinning": Kind(
+        find_spinning,
+        spinning_family,
+        spinning_unknowns,
+        _of_spinning,
+        spinning_start,
+        spinning_judge,
+    ),
+    "flapping": Kind(
+        find_flapping,
+        flapping_family,
+        flapping_unknowns,
+        _of_flapping,
+        flapping_start,
+        flapping_judge,
+    ),
 }
 
 
@@ -162,6 +197,47 @@ def follow(
     return follow_branch(
         family, kind.unknowns(state), start, to, Steps(scale=scale), progress, enough
     )
+
+
+def follow_from_onset(
+    model: Model, kind: str, to: float, *, progress: Progress | None = None
+) -> Branch[Any] | NotFound:
+    """Follow the branch of a kind of state from the Hopf point of the straight state on.
+
+    The first point lies a little off the Hopf point. A subcritical branch goes down first and turns
+    in a fold.
+
+    Parameters
+    ----------
+    model : Model
+        Its own force does not matter.
+    kind : {"spinning", "flapping"}
+    to : float
+        The force at which to end [B/L^2], beyond the Hopf force.
+    progress : callable, optional
+        Called with each force that was reached.
+
+    Raises
+    ------
+    InputError
+        There is no such kind, or `to` does not lie beyond the Hopf force.
+    """
+    chosen = kind_of(kind)
+    began = chosen.start(model)
+    if began is None:
+        return NotFound("the straight state stays stable, so that no branch begins at it")
+    problem, hopf = began
+    if to <= hopf.p:
+        raise InputError(f"the branch begins at force {hopf.p:.6g}; give an end beyond it")
+    scale = (to - hopf.p) / _PARTS
+    first = advance(problem, hopf, _AWAY, scale)
+    if first is None:
+        return NotFound(f"Newton's method finds no {kind} next to the Hopf point {hopf.p:.6g}")
+    problem = problem.referred_to(first.u)
+    state = chosen.judge(model, FORCE)(problem, first.u, first.p)
+    family = chosen.family(state, FORCE, scale)
+    steps = Steps(first=_AWAY, scale=scale)
+    return follow_branch(family, first.u, first.p, to, steps, progress, start=first, least=0.0)
 
 
 def kind_named(state: Spinning | Flapping) -> Kind:

@@ -139,8 +139,14 @@ class Links:
 
     @cached_property
     def pencil(self) -> Pencil:
-        """The pencil K(F) + sigma M."""
-        return _LinksPencil(self.model)
+        """The pencil K(F) + sigma M, which is linear for rigid links."""
+        whole = _LinksPencil(self.model)
+        base, one, two = (whole.stiffness(force) for force in (0.0, 1.0, 2.0))
+        change = one - base
+        round_off = 8.0 * np.finfo(float).eps * np.abs(base).max()
+        if np.abs(two - base - 2.0 * change).max() <= round_off:
+            return LinearPencil(base, change, whole.mass)
+        return whole
 
     def coarse(self, size: int) -> LinearPencil:
         """Return the pencil on the slowest modes without a force."""
@@ -183,8 +189,8 @@ class _LinksPencil:
         return model.linearised()[0]
 
     def slope(self, p: float) -> Array:
-        # Rigid links are linear in the force and any step is exact; for extensible ones, whose
-        # stiffness bends over forces of the size of S > 1e3, the relative error is (step / S)^2.
+        # Extensible links' stiffness bends over forces of the size of S > 1e3: the relative error
+        # is (step / S)^2.
         step = 1.0 if p >= 1.0 else 0.5 * p or 1.0
         below = max(0.0, p - step)
         return (self.stiffness(p + step) - self.stiffness(below)) / (p + step - below)

@@ -87,7 +87,7 @@ def _first_pairs(linearisation: Linearisation, count: int) -> list[CriticalPair]
     best: list[CriticalPair] = []
     # Later crossings want more of the small pencil than the first one does.
     for size in _SIZES if count == 1 else _SIZES[1:]:
-        guesses = crossings(linearisation.coarse(size))
+        guesses = crossings(linearisation.coarse(size))[: 2 * count + 1]
         found = [refine_crossing(linearisation.pencil, *guess) for guess in guesses]
         pairs = _distinct([pair for pair in found if pair is not None])
         best = max(best, _unbroken(linearisation.pencil, pairs[:count]), key=len)

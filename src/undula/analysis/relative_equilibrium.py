@@ -15,9 +15,14 @@ import numpy as np
 
 from undula.analysis.parameters import changed, neighbours
 from undula.arrays import Array, ComplexArray
+from undula.errors import InputError
 from undula.models.model import Model
 from undula.numerics.bordered import BandFactors, BorderedBand
 from undula.numerics.problem import Evaluation
+
+# Root mean square distance from the axis [L] up to which a shape passes for straight: beyond the
+# last step of Newton's method, far below that of a spinning state but at its very beginning.
+_STRAIGHT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -57,8 +62,7 @@ class TurningShape:
         equations = changed(self.model, self.parameter, p).equations
         velocity, dragged = equations.turning(y)
         matrix, _ = equations.parts(y, rate * velocity, rate)
-        phase = equations.turning(self.reference)[0]
-        phase /= np.linalg.norm(phase)
+        phase = self._phase(velocity)
         linear = BorderedBand(
             matrix,
             dragged[:, None],
@@ -70,6 +74,18 @@ class TurningShape:
         return Evaluation(
             np.append(residual, phase @ y), linear, np.append(self._by_parameter(y, rate, p), 0.0)
         )
+
+    def _phase(self, velocity: Array) -> Array:
+        """Return the unit vector along which the reference turns; refuse a straight shape."""
+        phase = self.model.equations.turning(self.reference)[0]
+        size = float(np.linalg.norm(phase))
+        across = np.sqrt(np.count_nonzero(self.model.equations.differential))
+        if size == 0.0 or phase @ velocity < _STRAIGHT * size * across:
+            raise InputError(
+                "a straight shape turns at any rate, so that no spinning state is near it;"
+                " begin with one that is bent"
+            )
+        return np.asarray(phase / size)
 
     def _by_parameter(self, y: Array, rate: float, p: float) -> Array:
         below, above, width = neighbours(self.model, self.parameter, p)

@@ -1,5 +1,7 @@
 """Spinning states, solved for: from the Hopf point on, from a run, or from a nearby state."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from undula.analysis.branches import Family
@@ -120,7 +122,7 @@ def _solved_from(model: Model, nodes: Nodes, rate: float) -> Spinning | NotFound
 def _followed_to(model: Model, problem: TurningShape, start: Point) -> Spinning | NotFound:
     """Return the first state at the model's force on a branch that grows towards it."""
     target, last = model.load.force, start
-    steps = Steps(scale=start.p)
+    steps = Steps(first=0.03, most=1.0, scale=start.p)
     ends = 0.0, target if target > start.p else 2.0 * start.p
     for count, point in enumerate(follow(problem, start, steps, ends)):
         if point.p == target > last.p:
@@ -143,6 +145,14 @@ def spinning_family(state: Spinning, parameter: str, scale: float) -> Family[Spi
 
 def _named(state: Spinning, index: int) -> str:
     return "torus" if state.exponents[index].imag != 0.0 else "symmetry breaking"
+
+
+def spinning_judge(
+    model: Model,  # noqa: ARG001
+    parameter: str,  # noqa: ARG001
+) -> Callable[[TurningShape, Array, float], Spinning]:
+    """Return the function from a problem along a parameter and its solution to the state."""
+    return spinning_state
 
 
 def spinning_unknowns(state: Spinning) -> Array:

@@ -11,12 +11,10 @@ from functools import cached_property
 
 import numpy as np
 
-from undula.analysis.observables import Range, envelope, tip_height, tip_radius
+from undula.analysis.observables import Range, tip_height, tip_radius
+from undula.analysis.periodic import over_period
 from undula.arrays import Array, ComplexArray, Nodes, Shapes
 from undula.models.model import Model
-
-# Extremes over a period are read from so many times more points than were computed.
-_FINER = 8
 
 
 @dataclass(frozen=True)
@@ -198,23 +196,17 @@ class Flapping:
     @cached_property
     def energy(self) -> Range:
         """Bending energy [B/L] over the period."""
-        return self._over_period(self.planar.observe(self.unknowns).bending_energy)
+        return over_period(self.planar.observe(self.unknowns).bending_energy)
 
     @cached_property
     def tip_radius(self) -> Range:
         """Distance of the tip from the axis [L] over the period."""
-        return self._over_period(tip_radius(self.nodes))
+        return over_period(tip_radius(self.nodes))
 
     @cached_property
     def tip_height(self) -> Range:
         """Height of the tip above the clamp [L] over the period."""
-        return self._over_period(tip_height(self.nodes))
-
-    def _over_period(self, values: Array) -> Range:
-        # The trigonometric polynomial through the samples, read between them.
-        fine = np.fft.irfft(np.fft.rfft(values), _FINER * values.size) * _FINER
-        extremes = envelope(np.concatenate([fine[-1:], fine, fine[:1]]))
-        return Range(extremes.min, extremes.max, float(np.mean(values)))
+        return over_period(tip_height(self.nodes))
 
     @cached_property
     def power_balance_error(self) -> float:

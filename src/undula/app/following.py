@@ -5,9 +5,10 @@ from typing import Any
 
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.convergence import Converged
-from undula.analysis.kinds import follow, kind_of
+from undula.analysis.kinds import follow, follow_from_onset, kind_of
 from undula.analysis.nearby import limit_of
 from undula.analysis.parameters import changed, value_of
+from undula.analysis.spinning import FORCE
 from undula.analysis.states import NotFound
 from undula.analysis.straight_branch import StraightBranch, follow_straight
 from undula.app.answers import Told
@@ -31,10 +32,10 @@ _KEPT = (
 
 @dataclass(frozen=True)
 class Way:
-    """A parameter, and the values at which to begin and to end."""
+    """A parameter, and the values at which to begin, None for the onset, and to end."""
 
     parameter: str
-    start: float
+    start: float | None
     end: float
 
 
@@ -50,16 +51,45 @@ def follow_along(
     """
     value_of(model, way.parameter)
     if kind == "straight":
-        if converge:
-            raise InputError("the straight state is converged already; leave --converge out")
-        straight = follow_straight(model, way.parameter, way.start, way.end)
-        return _told(straight_answer(straight), f"{title}: straight state"), straight
-    found = kind_of(kind).find(changed(model, way.parameter, way.start))
+        return _straight(model, way, converge=converge, title=title)
+    if way.start is None:
+        found = _from_onset(model, kind, way)
+    else:
+        found = _between(model, kind, way.parameter, way.start, way.end)
     if isinstance(found, NotFound):
         return not_found(found), None
-    with approached(f"following {kind}", way.start, way.end) as tell:
-        branch = follow(found, way.parameter, way.end, progress=tell)
-    return _told(branch_answer(branch, converge=converge), f"{title}: {kind}"), branch
+    answer = branch_answer(found, converge=converge)
+    if way.start is None:
+        answer["birth"] = "subcritical" if found.values[1] < found.values[0] else "supercritical"
+    return _told(answer, f"{title}: {kind}"), found
+
+
+def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[Told, StraightBranch]:
+    if converge:
+        raise InputError("the straight state is converged already; leave --converge out")
+    if way.start is None:
+        raise InputError(
+            "the straight state does not begin at its onset; give a number to start at"
+        )
+    straight = follow_straight(model, way.parameter, way.start, way.end)
+    return _told(straight_answer(straight), f"{title}: straight state"), straight
+
+
+def _from_onset(model: Model, kind: str, way: Way) -> Branch[Any] | NotFound:
+    if way.parameter != FORCE:
+        raise InputError(f"an onset is a value of {FORCE}; start {way.parameter} at a number")
+    with approached(f"following {kind}", 0.0, way.end) as tell:
+        return follow_from_onset(model, kind, way.end, progress=tell)
+
+
+def _between(
+    model: Model, kind: str, parameter: str, start: float, end: float
+) -> Branch[Any] | NotFound:
+    begun = kind_of(kind).find(changed(model, parameter, start))
+    if isinstance(begun, NotFound):
+        return begun
+    with approached(f"following {kind}", start, end) as tell:
+        return follow(begun, parameter, end, progress=tell)
 
 
 def branch_answer(branch: Branch[Any], *, converge: bool) -> dict[str, Any]:
@@ -137,6 +167,7 @@ def _told(answer: dict[str, Any], title: str) -> Told:
             for point in answer["points"]
         ),
         *(_bifurcation_line(one) for one in answer["bifurcations"]),
+        *([f"  born {answer['birth']}ly at the onset"] if "birth" in answer else []),
     ]
     return Told(answer, "\n".join(lines))
 

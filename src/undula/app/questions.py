@@ -72,7 +72,10 @@ def find(
 def follow(
     kind: Annotated[str, typer.Argument(metavar="KIND", help="straight, spinning or flapping.")],
     along: Annotated[
-        str, typer.Option(metavar="KEY=START:END", help="The way, as load.force=38:300.")
+        str,
+        typer.Option(
+            metavar="KEY=START:END", help="The way, as load.force=38:300 or load.force=onset:300."
+        ),
     ],
     file: Input = None,
     changes: Changes = None,

@@ -20,12 +20,13 @@ from undula.arrays import Array
 from undula.errors import InputError
 from undula.numerics.problem import Evaluation, Problem
 
-# Newton's method: what counts as converged, relative to changes of order 1, and how long it takes.
-_SMALL, _MOST_ITERATIONS = 1e-10, 12
+# Newton's method: a step this small, relative to changes of order 1, leaves about its square; and
+# how many steps it may take.
+_SMALL, _MOST_ITERATIONS = 1e-7, 12
 # A step that takes no more iterations than this may grow, and by how much; it shrinks on failure.
-_EASY, _GROWTH, _SHRINKAGE = 4, 1.6, 0.4
+_EASY, _GROWTH, _SHRINKAGE = 4, 2.0, 0.4
 # Cosine of the largest turn of the tangent in one step.
-_STRAIGHT = 0.9
+_STRAIGHT = 0.5
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Steps:
         The change of the parameter that counts as 1.
     """
 
-    first: float = 0.05
+    first: float = 0.1
     least: float = 1e-6
     most: float = 0.5
     scale: float = 1.0
@@ -92,14 +93,14 @@ def follow(
             reached = _point_at(problem, point, end, steps.scale)
         else:
             reached = advance(problem, point, length, steps.scale)
-        if reached is None or _product(problem, steps.scale, reached, point) < _STRAIGHT:
+        # A point beyond an end by its bend: after a shorter step the end itself is solved for.
+        if (
+            reached is None
+            or not _comes_next(problem, steps.scale, point, reached, length)
+            or not ends[0] <= reached.p <= ends[1]
+        ):
             length *= _SHRINKAGE
             continue
-        if not ends[0] <= reached.p <= ends[1]:
-            # Beyond an end by its bend: the end itself is near enough to be solved for.
-            end = min(max(reached.p, ends[0]), ends[1])
-            reached = _point_at(problem, reached, end, steps.scale) or reached
-            at_end = True
         if reached.iterations <= _EASY:
             length = min(steps.most, _GROWTH * length)
         yield reached
@@ -112,9 +113,11 @@ def _point_at(problem: Problem, point: Point, p: float, scale: float) -> Point |
     """Return the point of the branch at a parameter ahead, None if Newton's method fails."""
     length = (p - point.p) / point.tangent_p
     solved = solved_at(problem, point.u + length * point.tangent, p)
-    if solved is None:
+    there = None if solved is None else _evaluated(problem, solved[0], p)
+    if solved is None or there is None:
         return None
-    return with_tangent(problem, replace(point, u=solved[0], p=p, iterations=solved[1]), scale)
+    reached = replace(point, u=solved[0], p=p, iterations=solved[1])
+    return _tangent_from(there, problem, reached, scale)
 
 
 def advance(problem: Problem, point: Point, length: float, scale: float) -> Point | None:
@@ -129,23 +132,27 @@ def advance(problem: Problem, point: Point, length: float, scale: float) -> Poin
         if there is None:
             return None
         ahead = float(row @ (u - point.u)) + corner * (p - point.p) - length
-        du, dp = there.linear.solve(there.by_parameter, row, corner, -there.residual, -ahead)
+        du, dp = _answer(there, there.by_parameter, row, corner, -there.residual, -ahead)
         u, p = u + du, p + dp
         size = np.sqrt(problem.weights @ du**2 + (dp / scale) ** 2)
         if not np.isfinite(size) or (iteration > 2 and size > 10.0):
             return None
         if size < _SMALL:
             reached = replace(point, u=u, p=p, iterations=iteration)
-            return with_tangent(problem, reached, scale)
+            return _tangent_from(there, problem, reached, scale)
     return None
 
 
 def with_tangent(problem: Problem, point: Point, scale: float) -> Point:
     """Return the point with its own tangent, in the direction of the one that it carries."""
-    there = problem.evaluate(point.u, point.p)
+    return _tangent_from(problem.evaluate(point.u, point.p), problem, point, scale)
+
+
+def _tangent_from(there: Evaluation, problem: Problem, point: Point, scale: float) -> Point:
+    """Return the point with the tangent of an evaluation there, or within a last step of it."""
     row, corner = problem.weights * point.tangent, point.tangent_p / scale**2
     nothing = np.zeros_like(point.u)
-    du, dp = there.linear.solve(there.by_parameter, row, corner, nothing, 1.0)
+    du, dp = _answer(there, there.by_parameter, row, corner, nothing, 1.0)
     length = float(np.sqrt(problem.weights @ du**2 + (dp / scale) ** 2))
     return replace(point, tangent=du / length, tangent_p=dp / length)
 
@@ -157,7 +164,7 @@ def solved_at(problem: Problem, u: Array, p: float) -> tuple[Array, int] | None:
         there = _evaluated(problem, u, p)
         if there is None:
             return None
-        du, _ = there.linear.solve(nothing, nothing, 1.0, -there.residual, 0.0)
+        du, _ = _answer(there, nothing, nothing, 1.0, -there.residual, 0.0)
         u = u + du
         size = np.sqrt(problem.weights @ du**2)
         if not np.isfinite(size) or (iteration > 2 and size > 10.0):
@@ -195,7 +202,10 @@ def located(
 
     def value(length: float) -> float:
         if length not in found:
-            point = advance(problem, before, length, scale)
+            # At a branch point the equations are singular: one beside it is as good.
+            point = advance(problem, before, length, scale) or advance(
+                problem, before, length + tolerance, scale
+            )
             if point is None:
                 raise ArithmeticError
             found[length] = point
@@ -217,6 +227,22 @@ def _evaluated(problem: Problem, u: Array, p: float) -> Evaluation | None:
         return None
 
 
-def _product(problem: Problem, scale: float, one: Point, other: Point) -> float:
-    across = problem.weights @ (one.tangent * other.tangent)
-    return float(across + one.tangent_p * other.tangent_p / scale**2)
+def _answer(
+    there: Evaluation, column: Array, row: Array, corner: float, right: Array, last: float
+) -> tuple[Array, float]:
+    """Return the solution of a bordered system, no numbers where it has none."""
+    try:
+        return there.linear.solve(column, row, corner, right, last)
+    except np.linalg.LinAlgError:
+        return np.full_like(right, np.nan), np.nan
+
+
+def _comes_next(
+    problem: Problem, scale: float, point: Point, reached: Point, length: float
+) -> bool:
+    """Tell whether a point lies on the same stretch of a branch: neither far away nor turned."""
+    du, dp = reached.u - point.u, reached.p - point.p
+    away = np.sqrt(problem.weights @ du**2 + (dp / scale) ** 2)
+    across = problem.weights @ (point.tangent * reached.tangent)
+    cosine = across + point.tangent_p * reached.tangent_p / scale**2
+    return bool(cosine >= _STRAIGHT and _STRAIGHT * away <= length)

@@ -49,8 +49,10 @@ def parse_values(option: str, text: str) -> tuple[float, ...]:
     return tuple(np.linspace(start, stop, int(count)).tolist())
 
 
-def parse_way(option: str, text: str) -> tuple[str, float, float]:
+def parse_way(option: str, text: str) -> tuple[str, float | None, float]:
     """Return the parameter, the start and the end of ``load.force=38:300``.
+
+    The start is None for ``load.force=onset:300``: where the straight state loses stability.
 
     Raises
     ------
@@ -61,7 +63,10 @@ def parse_way(option: str, text: str) -> tuple[str, float, float]:
     ends = way.split(":")
     if not (name and equals and len(ends) == 2):
         raise InputError(f"{option} {text} has no 'KEY=START:END'; write it like load.force=38:300")
-    start, end = (_number(option, text, part) for part in ends)
+    end = _number(option, text, ends[1])
+    if ends[0].strip() == "onset":
+        return name, None, end
+    start = _number(option, text, ends[0])
     if start == end:
         raise InputError(f"{option} {text} goes nowhere; give two different numbers")
     return name, start, end

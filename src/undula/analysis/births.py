@@ -1,0 +1,85 @@
+"""Whether spinning and flapping leave the Hopf point upwards or downwards.
+
+Near the Hopf point a branch has the force F = F_H + c a^2 for a small amplitude a. With c > 0 it is
+born supercritically: it exists beyond F_H only and grows from nothing. With c < 0 it is born
+subcritically: it exists below F_H, unstable, turns back in a fold, and the filament jumps.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from undula.analysis.flapping import flapping_start
+from undula.analysis.spinning import spinning_start
+from undula.analysis.states import NotFound
+from undula.models.model import Model
+from undula.numerics.continuation import Point, advance
+from undula.numerics.problem import Problem
+
+# Arclengths at which the bend of a branch is measured: small enough for the square, large enough
+# for Newton's method to see it.
+_SHORT, _LONG = 0.01, 0.02
+
+
+@dataclass(frozen=True)
+class Birth:
+    """How a branch leaves its Hopf point.
+
+    Attributes
+    ----------
+    kind : {"spinning", "flapping"}
+    force : float
+        The Hopf force [B/L^2].
+    bend : float
+        c, the change of the force with the square of the amplitude, which is the root mean square
+        of the nodes' distances from the straight state, over the time of a beat too [B/L^4].
+    bend_error : float
+        Estimated from two amplitudes.
+    """
+
+    kind: Literal["spinning", "flapping"]
+    force: float
+    bend: float
+    bend_error: float
+
+    @property
+    def supercritical(self) -> bool:
+        """Whether the branch exists beyond the Hopf force."""
+        return self.bend > 0.0
+
+
+def births(model: Model) -> tuple[Birth, ...] | NotFound:
+    """Return how spinning, unless the model is confined, and flapping are born.
+
+    Parameters
+    ----------
+    model : Model
+        Its own force does not matter.
+    """
+    found = []
+    starts = {"flapping": flapping_start} | (
+        {"spinning": spinning_start} if model.dimension == 3 else {}
+    )
+    for kind, start_of in starts.items():
+        start = start_of(model)
+        if start is None:
+            return NotFound("the straight state stays stable, so that nothing is born")
+        birth = _birth(kind, *start)
+        if birth is None:
+            return NotFound(f"Newton's method finds no {kind} next to the Hopf point")
+        found.append(birth)
+    return tuple(found)
+
+
+def _birth(kind: str, problem: Problem, start: Point) -> Birth | None:
+    bends = []
+    for length in (_SHORT, _LONG):
+        point = advance(problem, start, length, start.p)
+        if point is None:
+            return None
+        away = problem.weights @ (point.u - start.u) ** 2
+        bends.append((point.p - start.p) / away)
+    # The next term is of the square of the amplitude, four times larger for the longer one.
+    bend = bends[0] + (bends[0] - bends[1]) / 3.0
+    return Birth(kind, start.p, float(bend), float(np.abs(bend - bends[0])))  # type: ignore[arg-type]

@@ -1,0 +1,202 @@
+"""Motions that are periodic up to a turn, solved for: from a run, or where flapping gives birth.
+
+Where planar flapping loses or gains stability by a real disturbance out of its plane, a motion out
+of the plane is born. In the frame of half a beat, turned by pi, both are x(t + T) = R(angle) x(t),
+so that the new branch is found along the null vector of these equations.
+"""
+
+import numpy as np
+
+from undula.analysis.branch_records import Bifurcation, Branch
+from undula.analysis.branches import Family, Progress, follow_branch
+from undula.analysis.flapping import INTERVALS, flapping_unknowns, in_space
+from undula.analysis.modulated_state import Modulated
+from undula.analysis.parameters import changed, value_of
+from undula.analysis.run import Run
+from undula.analysis.spinning import require_space
+from undula.analysis.states import Flapping, NotFound
+from undula.arrays import Array
+from undula.errors import InputError
+from undula.models.model import Model
+from undula.models.starts import from_state
+from undula.numerics.closure import Closure, Rotation
+from undula.numerics.continuation import Point, Steps
+from undula.numerics.floquet import floquet_of
+from undula.numerics.orbits import (
+    LastShot,
+    Orbit,
+    OrbitProblem,
+    Reference,
+    find_orbit,
+    orbit_at,
+)
+from undula.numerics.problem import DenseLinear
+from undula.numerics.shooting import Shooting, Shot
+
+FORCE = "load.force"
+
+
+def find_modulated(model: Model, guess: Run | Modulated) -> Modulated | NotFound:
+    """Solve for a motion that is periodic up to a turn about the axis.
+
+    Parameters
+    ----------
+    model : Model
+        In space.
+    guess : Run or Modulated
+        A run whose shape repeats itself, or the state of a similar model.
+
+    Returns
+    -------
+    Modulated or NotFound
+
+    Raises
+    ------
+    InputError
+        The model is confined to a plane.
+    """
+    require_space(model)
+    if isinstance(guess, Modulated):
+        nodes, duration, angle = guess.nodes[-1], guess.duration, guess.angle
+    else:
+        shape, turning = guess.shape_frequency, guess.rotation_frequency
+        if shape is None or turning is None or shape.value == 0.0:
+            return NotFound(
+                f"the run's shape does not repeat itself ({guess.verdict.name}); let it settle"
+                " longer, or look for spinning or flapping"
+            )
+        nodes, duration = guess.motion.nodes[-1], 1.0 / shape.value
+        angle = 2.0 * np.pi * turning.value * duration
+    start = model.admissible(from_state(model, nodes))
+    search = find_orbit(
+        _shooting(model, FORCE), np.concatenate([start, [duration, angle]]), model.load.force
+    )
+    if search.orbit is None:
+        residual = search.solution.residual if search.solution else None
+        return NotFound(f"no such motion was found from the guess: {search.advice}", residual)
+    return _judged(model, search.orbit)
+
+
+def modulated_family(state: Modulated, parameter: str, scale: float) -> Family[Modulated]:
+    """Return the family of a motion that is periodic up to a turn, along a parameter."""
+    shooting = _shooting(state.model, parameter)
+    start = shooting.shoot(modulated_unknowns(state), value_of(state.model, parameter))
+    assert isinstance(start, Shot)  # the state was found so
+    problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
+    return _family(state.model, problem, parameter, scale)
+
+
+def modulated_unknowns(state: Modulated) -> Array:
+    """Return the unknowns of a state in the equations of its family."""
+    turned_back = state.model.rotate(state.model.positions(state.unknowns[-1]), -state.angle)
+    return np.concatenate([turned_back, [state.duration, state.angle]])
+
+
+def follow_born(
+    bifurcation: Bifurcation[Flapping],
+    to: float,
+    *,
+    parameter: str = FORCE,
+    progress: Progress | None = None,
+) -> Branch[Modulated]:
+    """Follow the motion out of the plane that is born on a branch of planar flapping.
+
+    Parameters
+    ----------
+    bifurcation : Bifurcation
+        A symmetry breaking of planar flapping, out of its plane.
+    to : float
+        Value of the parameter at which to end; the branch may turn back before.
+    parameter : str
+        Name of the parameter that the bifurcation is a value of.
+    progress : callable, optional
+        Called with each value that was reached.
+
+    Raises
+    ------
+    InputError
+        The bifurcation is none of this kind.
+    """
+    state = bifurcation.state
+    if not isinstance(state, Flapping) or bifurcation.kind != "symmetry breaking":
+        raise InputError(
+            f"a {bifurcation.kind} of {type(state).__name__} gives birth to no motion that could be"
+            " followed; give a symmetry breaking of planar flapping"
+        )
+    require_space(state.model)
+    u, shooting = _in_space(state), _shooting(state.model, parameter)
+    start = shooting.shoot(u, bifurcation.value)
+    assert isinstance(start, Shot)  # the planar motion was found so
+    problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
+    scale = abs(to - bifurcation.value) or 1.0
+    point = Point(u, bifurcation.value, _null_vector(problem, u, bifurcation.value), 0.0)
+    family = _family(state.model, problem, parameter, scale)
+    # Born sideways: the first steps are short.
+    steps = Steps(first=0.03, most=0.3, scale=scale)
+    return follow_branch(family, u, bifurcation.value, to, steps, progress, start=point)
+
+
+def _in_space(state: Flapping) -> Array:
+    """Return half a beat as a motion in space that has turned by pi."""
+    planar = flapping_unknowns(state)
+    x = in_space(state.unknowns[-1])[state.model.equations.differential]
+    return np.concatenate([x, [planar[-1], np.pi]])
+
+
+def _null_vector(problem: OrbitProblem, u: Array, p: float) -> Array:
+    """Return the direction in which the equations are singular, of length 1 in their norm."""
+    linear = problem.evaluate(u, p).linear
+    assert isinstance(linear, DenseLinear)  # as orbits have it
+    direction = np.linalg.svd(linear.matrix)[2][-1]
+    return np.asarray(direction / np.sqrt(problem.weights @ direction**2))
+
+
+def _shooting(model: Model, parameter: str) -> Shooting:
+    def rotate(y: Array, angle: float) -> Array:
+        turned = y.reshape(-1, 4).copy()
+        cosine, sine = np.cos(angle), np.sin(angle)
+        turned[:, :2] = turned[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+        return turned.ravel()
+
+    def generator(y: Array) -> Array:
+        velocity: Array = model.equations.turning(np.ascontiguousarray(y))[0]
+        return velocity
+
+    return Shooting(
+        equations_at=lambda p: changed(model, parameter, p).equations,
+        closure=Closure(rotation=Rotation(rotate, generator)),
+        intervals=INTERVALS,
+    )
+
+
+def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -> Family[Modulated]:
+    def judge(problem: OrbitProblem, u: Array, p: float) -> Modulated:
+        orbit = orbit_at(problem, u, p)
+        assert orbit is not None  # it was solved for
+        return _judged(changed(model, parameter, p), orbit)
+
+    return Family(parameter, problem, judge, _named, scale)
+
+
+def _judged(model: Model, orbit: Orbit) -> Modulated:
+    shot = orbit.shot
+    judged = floquet_of(shot)
+    # A disturbance that is gone to the last digit has no exponent.
+    multipliers = judged.multipliers[np.abs(judged.multipliers) > np.finfo(float).tiny]
+    exponents = np.asarray(np.log(multipliers) / shot.duration, dtype=np.complex128)
+    return Modulated(
+        model=model,
+        duration=shot.duration,
+        angle=shot.angle,
+        unknowns=shot.flow.stages[:, -1],
+        residual=float(np.abs((shot.end - shot.y)[shot.moving]).max()),
+        exponents=exponents[np.lexsort((-exponents.imag, -exponents.real))],
+        trivial=tuple(float(error) for error in judged.known_errors),
+    )
+
+
+def _named(state: Modulated, index: int) -> str:
+    swing = abs(state.exponents[index].imag) * state.duration
+    if min(swing, abs(swing - np.pi)) > 1e-6:
+        return "torus"
+    return "period doubling" if swing > 1.0 else "branch point"
