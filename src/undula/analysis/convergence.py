@@ -1,8 +1,9 @@
 """Answers in the limit of many links, from a few numbers of links and the known order.
 
 A quantity of a body that links stand for depends on their number N as q + c / N^2 + d / N^4 + ...
-From N, 2 N and 4 N the first two terms are taken off (Romberg's scheme); what the second one
-changed is the stated error, which is that of the answer before it, and so on the safe side.
+From N, 2 N and 4 N the first two terms are taken off (Romberg's scheme), from 8 N as well the third
+where that is needed. What the last one changed is the stated error, which is that of the answer
+before it, and so on the safe side.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -16,8 +17,10 @@ from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model
 
-#: Numbers of links relative to the model's own.
-REFINEMENTS = (1, 2, 4)
+#: Numbers of links relative to the model's own; the last one only if the answer is not good yet.
+REFINEMENTS = (1, 2, 4, 8)
+# An answer is good if each quantity has this relative error, from so many numbers of links.
+_GOOD, _FEWEST = 5e-6, 3
 
 S = TypeVar("S")
 
@@ -64,9 +67,9 @@ def converge(
         The links of the model are its body, so that there is no limit.
     """
     answers: list[S] = []
-    links = tuple(refinement * model.links for refinement in REFINEMENTS)
-    for count in links:
-        finer = model.with_links(count)
+    limits: dict[str, tuple[float, float]] = {}
+    for refinement in REFINEMENTS:
+        finer = model.with_links(refinement * model.links)
         if finer is None:
             raise InputError(
                 "the links of this model are its body: there is nothing to converge to; leave"
@@ -76,13 +79,24 @@ def converge(
         if isinstance(found, NotFound):
             return found
         answers.append(found)
-    rows = [quantities(answer) for answer in answers]
-    limits = {name: extrapolated([row[name] for row in rows]) for name in rows[0]}
+        rows = [quantities(answer) for answer in answers]
+        limits = {name: extrapolated([row[name] for row in rows]) for name in rows[0]}
+        if len(answers) >= _FEWEST and _are_good(limits):
+            break
     return Converged(
         finest=answers[-1],
-        links=links,
+        links=tuple(refinement * model.links for refinement in REFINEMENTS[: len(answers)]),
         values={name: value for name, (value, _) in limits.items()},
         errors={name: error for name, (_, error) in limits.items()},
+    )
+
+
+def _are_good(limits: Mapping[str, tuple[float, float]]) -> bool:
+    # Growth rates pass through 0, where nothing is good to a share of itself.
+    return all(
+        error <= _GOOD * abs(value)
+        for name, (value, error) in limits.items()
+        if not name.startswith("leading_rate")
     )
 
 

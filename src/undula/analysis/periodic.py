@@ -17,7 +17,11 @@ def over_period(values: Array) -> Range:
     values : ndarray of shape (m,)
         Samples at equally spaced instants of one period, of which one end is left out.
     """
-    # The trigonometric polynomial through the samples, read between them.
-    fine = np.fft.irfft(np.fft.rfft(values), _FINER * values.size) * _FINER
+    fine = finely(values)
     extremes = envelope(np.concatenate([fine[-1:], fine, fine[:1]]))
     return Range(extremes.min, extremes.max, float(np.mean(values)))
+
+
+def finely(values: Array) -> Array:
+    """Return the trigonometric polynomial through samples (m,) of a period at 8 m instants."""
+    return np.asarray(np.fft.irfft(np.fft.rfft(values), _FINER * values.size) * _FINER)

@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from undula.analysis.observables import Range, tip_height, tip_radius
-from undula.analysis.periodic import over_period
+from undula.analysis.observables import Range, envelope, tip_height, tip_radius
+from undula.analysis.periodic import finely, over_period
 from undula.arrays import Array, ComplexArray, Nodes, Shapes
 from undula.models.model import Model
 
@@ -200,8 +200,9 @@ class Flapping:
 
     @cached_property
     def tip_radius(self) -> Range:
-        """Distance of the tip from the axis [L] over the period."""
-        return over_period(tip_radius(self.nodes))
+        """Distance of the tip from the axis [L] over the period; 0 as it passes."""
+        sideways = finely(self.nodes[:, -1, 0])
+        return Range(0.0, envelope(sideways).max, float(np.mean(np.abs(sideways))))
 
     @cached_property
     def tip_height(self) -> Range:

@@ -69,7 +69,7 @@ def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[To
         raise InputError("the straight state is converged already; leave --converge out")
     if way.start is None:
         raise InputError(
-            "the straight state does not begin at its onset; give a number to start at"
+            "the straight state ends at its onset; give a number to start at"
         )
     straight = follow_straight(model, way.parameter, way.start, way.end)
     return _told(straight_answer(straight), f"{title}: straight state"), straight
