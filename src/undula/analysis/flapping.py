@@ -6,6 +6,7 @@ mix: the former come with the solution, the latter from the equations in space, 
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -30,12 +31,13 @@ from undula.numerics.orbits import (
     Reference,
     find_orbit,
     orbit_at,
+    time_error,
 )
 from undula.numerics.shooting import Shooting, Shot
 
 FORCE = "load.force"
-# Steps of half a beat: with 3 stages the error of the frequency is then some 1e-8 (measured, and
-# stated in each answer).
+# Steps of half a beat: with 3 stages the relative error of the frequency is then some 1e-7, which
+# each answer states for itself.
 INTERVALS = 32
 # The run that a beat is taken from: a start large enough to be quick, and how long it may take.
 _START, _LONGEST = 0.3, 6.0
@@ -67,7 +69,8 @@ def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping
     if search.orbit is None:
         residual = search.solution.residual if search.solution else None
         return NotFound(f"no planar beat was found from the guess: {search.advice}", residual)
-    return _judged(model, search.orbit)
+    found, half = _judged(model, search.orbit), search.orbit.shot.duration
+    return replace(found, time_error=found.frequency * time_error(search.orbit) / half)
 
 
 def flapping_family(state: Flapping, parameter: str, scale: float) -> Family[Flapping]:
@@ -141,11 +144,16 @@ def _start_and_half_period(
         return _positions(flat, guess.nodes[-1]), 0.5 * guess.period
     run = guess or integrate(flat, planar(flat, _START), until="settled", limit=_LONGEST)
     if run.frequency is None or run.frequency.value == 0.0:
-        return NotFound(
-            f"a {'given' if guess else 'confined'} run does not beat ({run.verdict.name}); planar"
-            " flapping begins at the onset, see undula stability"
-        )
+        whose = "given" if guess else "confined"
+        return NotFound(f"the {whose} run does not beat ({run.verdict.name}): {_onset_text(flat)}")
     return _positions(flat, run.motion.nodes[-1]), 0.5 / abs(run.frequency.value)
+
+
+def _onset_text(flat: Model) -> str:
+    pair = first_pair(linearised(flat, "discrete"))
+    if pair is None:
+        return "the straight state stays stable, so that no beat begins at it"
+    return f"planar flapping begins at force {pair.p:.6g}, and this one is {flat.load.force:.6g}"
 
 
 def _positions(flat: Model, nodes: Array) -> Array:

@@ -20,6 +20,10 @@ from undula.numerics.continuation import Point, Steps, follow, solved_at
 FORCE = "load.force"
 # A branch that has not come to the force after so many steps will hardly do so.
 _MOST_STEPS = 400
+# With more links than this the branch is followed with so many, and only its end refined.
+_FEW_LINKS = 20
+# A state with tangents this near to the axis [rad] is the straight one.
+_STRAIGHT = 1e-6
 
 
 def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning | NotFound:
@@ -44,12 +48,15 @@ def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning
     """
     require_space(model)
     if guess is not None:
-        nodes, rate = _shape_and_rate(guess)
-        return _solved_from(model, nodes, rate)
-    start = spinning_start(model)
-    if start is None:
-        return NotFound("the straight state stays stable, so that no spinning state begins at it")
-    return _followed_to(model, *start)
+        return _solved_from(model, *_shape_and_rate(guess))
+    coarse = model.with_links(_FEW_LINKS) if model.links > _FEW_LINKS else None
+    if coarse is not None:
+        near = _followed(coarse)
+        if not isinstance(near, NotFound):
+            found = _solved_from(model, *_shape_and_rate(near))
+            if not isinstance(found, NotFound):
+                return found
+    return _followed(model)
 
 
 def require_space(model: Model) -> None:
@@ -107,6 +114,8 @@ def _solved_from(model: Model, nodes: Nodes, rate: float) -> Spinning | NotFound
     y = model.unknowns(model.admissible(from_state(model, nodes)))
     problem = TurningShape(model, FORCE, y, max(1.0, abs(rate)))
     solved = solved_at(problem, np.append(y, rate), model.load.force)
+    if solved is not None and model.departure(model.positions(solved[0][:-1])) < _STRAIGHT:
+        return NotFound("the straight state is all that Newton's method finds from the guess", 0.0)
     if solved is None:
         residual = float(
             np.abs(problem.evaluate(np.append(y, rate), model.load.force).residual).max()
@@ -119,21 +128,28 @@ def _solved_from(model: Model, nodes: Nodes, rate: float) -> Spinning | NotFound
     return spinning_state(problem, solved[0], model.load.force)
 
 
-def _followed_to(model: Model, problem: TurningShape, start: Point) -> Spinning | NotFound:
-    """Return the first state at the model's force on a branch that grows towards it."""
+def _followed(model: Model) -> Spinning | NotFound:
+    """Return the state at the model's force where its branch, from the Hopf point on, goes up."""
+    began = spinning_start(model)
+    if began is None:
+        return NotFound("the straight state stays stable, so that no spinning state begins at it")
+    problem, start = began
     target, last = model.load.force, start
     steps = Steps(first=0.03, most=1.0, scale=start.p)
-    ends = 0.0, target if target > start.p else 2.0 * start.p
+    ends = 0.0, max(target, 1.5 * start.p)
     for count, point in enumerate(follow(problem, start, steps, ends)):
-        if point.p == target > last.p:
-            return spinning_state(problem, point.u, target)
+        if last.p < target <= point.p:
+            share = (target - last.p) / (point.p - last.p)
+            solved = solved_at(problem, last.u + share * (point.u - last.u), target)
+            if solved is not None:
+                return spinning_state(problem, solved[0], target)
         last = point
         if count > _MOST_STEPS:
             break
     return NotFound(
         f"the spinning branch begins at force {start.p:.6g} and was followed to {last.p:.6g}"
-        f" without coming to {target:.6g}; ask for a force beyond its beginning, or give a run"
-        " that spins as a guess"
+        f" without coming up to {target:.6g}; ask for a larger force, or give a run that spins as a"
+        " guess"
     )
 
 
