@@ -32,8 +32,9 @@ class Birth:
     force : float
         The Hopf force [B/L^2].
     bend : float
-        c, the change of the force with the square of the amplitude, which is the root mean square
-        of the nodes' distances from the straight state, over the time of a beat too [B/L^4].
+        c, the change of the force with the square of the amplitude [B/L^4]: a is the root mean
+        square over the nodes' coordinates of how far they are from the straight state, for
+        flapping at the instant at which the tip is farthest in the linear mode.
     bend_error : float
         Estimated from two amplitudes.
     """

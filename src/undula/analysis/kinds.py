@@ -14,7 +14,7 @@ from undula.analysis.flapping import (
     flapping_start,
     flapping_unknowns,
 )
-from undula.analysis.parameters import value_of
+from undula.analysis.parameters import changed, value_of
 from undula.analysis.spinning import (
     FORCE,
     find_spinning,
@@ -143,7 +143,9 @@ def with_error(state: Spinning | Flapping) -> Spinning | Flapping:
     return replace(state, error=abs(found.frequency - state.frequency) / share)
 
 
-def converged(model: Model, kind: str) -> Converged[Any] | NotFound:
+def converged(
+    model: Model, kind: str, *, progress: Callable[[int], None] | None = None
+) -> Converged[Any] | NotFound:
     """Return a state in the limit of many links.
 
     Parameters
@@ -151,6 +153,8 @@ def converged(model: Model, kind: str) -> Converged[Any] | NotFound:
     model : Model
         With the fewest links of those that the limit is taken from.
     kind : {"spinning", "flapping"}
+    progress : callable, optional
+        Called with each number of links before the state is solved for.
 
     Raises
     ------
@@ -158,7 +162,13 @@ def converged(model: Model, kind: str) -> Converged[Any] | NotFound:
         There is no such kind, or the links of the model are its body.
     """
     chosen = kind_of(kind)
-    return converge(model, chosen.find, chosen.quantities)
+
+    def find(finer: Model, coarser: Any) -> Any:
+        if progress:
+            progress(finer.links)
+        return chosen.find(finer, coarser)
+
+    return converge(model, find, chosen.quantities)
 
 
 def follow(
@@ -187,9 +197,11 @@ def follow(
     Raises
     ------
     InputError
-        There is no such parameter, or it is a whole number, or `to` is where the state is.
+        There is no such parameter, or it is a whole number, or `to` is where the state is or out of
+        the parameter's range.
     """
     kind, start = kind_named(state), value_of(state.model, parameter)
+    changed(state.model, parameter, to)
     if to == start:
         raise InputError(f"{parameter} is {start} already; give another value to follow to")
     scale = abs(to - start) / _PARTS

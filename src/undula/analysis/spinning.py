@@ -15,13 +15,15 @@ from undula.arrays import Array, Nodes
 from undula.errors import InputError
 from undula.models.model import Model
 from undula.models.starts import from_state
-from undula.numerics.continuation import Point, Steps, follow, solved_at
+from undula.numerics.continuation import Point, Steps, follow, located, solved_at
 
 FORCE = "load.force"
 # A branch that has not come to the force after so many steps will hardly do so.
 _MOST_STEPS = 400
 # With more links than this the branch is followed with so many, and only its end refined.
 _FEW_LINKS = 20
+# The target is approached to this share of its size before it is solved for.
+_NEAR = 1e-3
 # A state with tangents this near to the axis [rad] is the straight one.
 _STRAIGHT = 1e-6
 
@@ -139,11 +141,11 @@ def _followed(model: Model) -> Spinning | NotFound:
     ends = 0.0, max(target, 1.5 * start.p)
     for count, point in enumerate(follow(problem, start, steps, ends)):
         if last.p < target <= point.p:
-            share = (target - last.p) / (point.p - last.p)
-            solved = solved_at(problem, last.u + share * (point.u - last.u), target)
-            if solved is not None:
+            near = located(problem, last, point, lambda at: at.p - target, start.p, _NEAR)
+            solved = near and solved_at(problem, near.u, target)
+            if solved:
                 return spinning_state(problem, solved[0], target)
-        last = point
+        last, problem = point, problem.referred_to(point.u)
         if count > _MOST_STEPS:
             break
     return NotFound(

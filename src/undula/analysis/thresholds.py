@@ -8,9 +8,11 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from undula.analysis.branch_records import Bifurcation
+from undula.analysis.branches import Progress
 from undula.analysis.convergence import converge
 from undula.analysis.kinds import follow, kind_of
 from undula.analysis.nearby import found_again, quantities_of
@@ -61,22 +63,28 @@ class Threshold:
 
 @dataclass(frozen=True)
 class _Search:
-    """Which bifurcation of which kind of state a threshold is."""
+    """Which bifurcation of which kind of state a threshold is, and what the state does there."""
 
     kind: str
+    does: str
     is_it: Callable[[Bifurcation[Any]], bool]
 
 
 _SEARCHES: Mapping[str, _Search] = {
-    "spinning-lost": _Search("spinning", lambda one: one.loses),
-    "flapping-gained": _Search("flapping", lambda one: one.gains),
-    "flapping-lost": _Search("flapping", lambda one: one.loses),
+    "spinning-lost": _Search("spinning", "lose stability", lambda one: one.loses),
+    "flapping-gained": _Search("flapping", "become stable", lambda one: one.gains),
+    "flapping-lost": _Search("flapping", "lose stability", lambda one: one.loses),
 }
 THRESHOLDS: tuple[str, ...] = ("onset", *_SEARCHES)
 
 
 def threshold(
-    model: Model, kind: str, *, converged: bool = False, near: Threshold | None = None
+    model: Model,
+    kind: str,
+    *,
+    converged: bool = False,
+    near: Threshold | None = None,
+    progress: Callable[[int, float], None] | None = None,
 ) -> Threshold:
     """Return the force at which a state gains or loses stability.
 
@@ -89,6 +97,8 @@ def threshold(
         Whether to extrapolate to many links.
     near : Threshold, optional
         The same threshold of a similar model, to begin at.
+    progress : callable, optional
+        Called with the number of links and each force that was reached.
 
     Raises
     ------
@@ -100,20 +110,21 @@ def threshold(
     if kind == "onset":
         return _onset(model)
     guess = near.at if near else None
+
+    def search(finer: Model, known: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
+        return _search(
+            finer, kind, known or guess, partial(progress, finer.links) if progress else None
+        )
+
     if not converged:
-        found = _search(model, kind, guess)
+        found = search(model, None)
         if isinstance(found, NotFound):
             return Threshold(kind, None, reason=found.reason)
-        return _threshold(kind, found, found.value, found.error, found.frequency)
-    limit = converge(
-        model, lambda finer, coarser: _search(finer, kind, coarser or guess), quantities_of
-    )
+        return _threshold(kind, found, _numbers(found), found.error)
+    limit = converge(model, search, _numbers)
     if isinstance(limit, NotFound):
         return Threshold(kind, None, reason=limit.reason)
-    values = limit.values
-    return _threshold(
-        kind, limit.finest, values["value"], limit.errors["value"], values["frequency"]
-    )
+    return _threshold(kind, limit.finest, limit.values, limit.errors["value"])
 
 
 def threshold_curve(
@@ -157,16 +168,24 @@ def _onset(model: Model) -> Threshold:
     return Threshold("onset", hopf.force, hopf.error, hopf.frequency, bifurcation="Hopf")
 
 
+def _numbers(found: Bifurcation[Any]) -> dict[str, float]:
+    # A real exponent is one whose second frequency is 0.
+    return {"second_frequency": 0.0} | quantities_of(found)
+
+
 def _threshold(
-    kind: str, at: Bifurcation[Any], value: float, error: float, frequency: float
+    kind: str, at: Bifurcation[Any], numbers: Mapping[str, float], error: float
 ) -> Threshold:
-    return Threshold(kind, value, error, frequency, at.second_frequency, at.kind, at=at)
+    second = numbers["second_frequency"] or None
+    return Threshold(kind, numbers["value"], error, numbers["frequency"], second, at.kind, at=at)
 
 
-def _search(model: Model, kind: str, near: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
+def _search(
+    model: Model, kind: str, near: Bifurcation[Any] | None, progress: Progress | None
+) -> Bifurcation[Any] | NotFound:
     search = _SEARCHES[kind]
     if near is not None:
-        found = found_again(near, model, FORCE, search.is_it)
+        found = found_again(near, model, FORCE, search.is_it, progress)
         if not isinstance(found, NotFound):
             return found
     onset = critical_force(model, method="discrete", later=0)
@@ -176,8 +195,12 @@ def _search(model: Model, kind: str, near: Bifurcation[Any] | None) -> Bifurcati
     begun = kind_of(search.kind).find(changed(model, FORCE, start))
     if isinstance(begun, NotFound):
         return begun
-    branch = follow(begun, FORCE, end, enough=search.is_it)
+    branch = follow(begun, FORCE, end, progress=progress, enough=search.is_it)
     for bifurcation in branch.bifurcations:
         if search.is_it(bifurcation):
             return bifurcation
-    return NotFound(f"no such change between force {start:.6g} and {branch.values[-1]:.6g}")
+    return NotFound(
+        f"{search.kind} is {'stable' if begun.stable else 'unstable'} at force {start:.6g} and does"
+        f" not {search.does} up to {branch.values.max():.6g}"
+        + ("" if branch.complete else ", beyond which it was not followed")
+    )

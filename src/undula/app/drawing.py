@@ -14,7 +14,6 @@ from undula.analysis.straight_branch import StraightBranch
 from undula.analysis.thresholds import Threshold
 from undula.app.meter import meter
 from undula.errors import InputError
-from undula.studies.store import load_result
 from undula.studies.whole_file import claim_output, write_whole
 from undula.views import (
     bifurcation_diagram,
@@ -95,35 +94,44 @@ def save_figure(figure: Any, path: Path, *, overwrite: bool) -> None:
     write_whole(path, image.getvalue(), overwrite=overwrite)
 
 
+def check_straight(parameter: str) -> None:
+    """Refuse to draw the straight state along anything but the force.
+
+    Raises
+    ------
+    InputError
+        The parameter is another one.
+    """
+    if parameter != "load.force":
+        raise InputError(
+            "the straight state is drawn along load.force only; for thresholds along"
+            f" {parameter} use undula stability --along"
+        )
+
+
 def draw_straight(branch: StraightBranch, path: Path, *, title: str) -> None:
     """Draw growth rate and frequency of the straight state against the force into a file.
 
     Raises
     ------
     InputError
-        It was followed along something else, or the file cannot be written.
+        The file cannot be written.
     """
-    if branch.parameter != "load.force":
-        raise InputError(
-            "the straight state is drawn along load.force only; for thresholds along"
-            f" {branch.parameter} use undula stability --along"
-        )
     growth = GrowthCurve(
         branch.values, branch.rates, branch.frequencies, np.zeros_like(branch.rates), "spectral"
     )
     save_figure(growth_figure(growth, title=title), path, overwrite=True)
 
 
-def draw_branch(branch: Branch[Any], runs: Sequence[Path], path: Path, *, title: str) -> None:
+def draw_branch(branch: Branch[Any], runs: Sequence[xr.Dataset], path: Path, *, title: str) -> None:
     """Draw a branch of states, with stored runs as dots, into a file.
 
     Raises
     ------
     InputError
-        A run cannot be read, or the file cannot be written.
+        The file cannot be written.
     """
-    stored = [load_result(run) for run in runs]
-    save_figure(bifurcation_diagram([branch], title=title, runs=stored), path, overwrite=True)
+    save_figure(bifurcation_diagram([branch], title=title, runs=runs), path, overwrite=True)
 
 
 def draw_thresholds(

@@ -7,6 +7,7 @@ from undula.analysis.kinds import converged, kind_of, with_error
 from undula.analysis.observables import Range
 from undula.analysis.states import Flapping, NotFound, Spinning
 from undula.app.answers import Told
+from undula.app.progress import searching
 from undula.app.run_text import with_error as with_digits
 from undula.models.model import Model
 
@@ -28,19 +29,20 @@ def find(model: Model, kind: str, *, converge: bool, title: str) -> Told:
     InputError
         There is no such kind, or the model has no limit of many links.
     """
-    found = converged(model, kind) if converge else kind_of(kind).find(model)
+    with searching(f"finding {kind}") as tell:
+        found = converged(model, kind, progress=tell) if converge else kind_of(kind).find(model)
     if isinstance(found, NotFound):
-        return not_found(found)
+        return not_found(found, f"{title}: {kind}")
     answer = (
         _limit_answer(found) if isinstance(found, Converged) else state_answer(with_error(found))
     )
     return Told(answer, _text(title, answer))
 
 
-def not_found(reason: NotFound) -> Told:
+def not_found(reason: NotFound, title: str) -> Told:
     """Return the answer that there is no state, with the advice what to try."""
     answer = {"status": "not found", "reason": reason.reason, "residual": reason.residual}
-    return Told(answer, f"not found: {reason.reason}")
+    return Told(answer, f"{title} not found: {reason.reason}")
 
 
 def state_answer(state: Spinning | Flapping) -> dict[str, Any]:
@@ -72,6 +74,7 @@ def state_answer(state: Spinning | Flapping) -> dict[str, Any]:
         "leading_rate_in_plane": state.leading_rate_in_plane,
         "leading_rate_out_of_plane": state.leading_rate_out_of_plane,
         "trivial_multiplier_error": max(state.trivial),
+        "time_error": state.time_error,
     }
 
 

@@ -14,6 +14,7 @@ from undula.analysis.straight_branch import StraightBranch, follow_straight
 from undula.app.answers import Told
 from undula.app.finding import not_found, state_answer
 from undula.app.progress import approached
+from undula.app.run_text import with_error
 from undula.errors import InputError
 from undula.models.model import Model
 
@@ -57,7 +58,7 @@ def follow_along(
     else:
         found = _between(model, kind, way.parameter, way.start, way.end)
     if isinstance(found, NotFound):
-        return not_found(found), None
+        return not_found(found, f"{title}: {kind}"), None
     answer = branch_answer(found, converge=converge)
     if way.start is None:
         answer["birth"] = "subcritical" if found.values[1] < found.values[0] else "supercritical"
@@ -68,9 +69,7 @@ def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[To
     if converge:
         raise InputError("the straight state is converged already; leave --converge out")
     if way.start is None:
-        raise InputError(
-            "the straight state ends at its onset; give a number to start at"
-        )
+        raise InputError("the straight state ends at its onset; give a number to start at")
     straight = follow_straight(model, way.parameter, way.start, way.end)
     return _told(straight_answer(straight), f"{title}: straight state"), straight
 
@@ -126,7 +125,14 @@ def straight_answer(branch: StraightBranch) -> dict[str, Any]:
             for value, rate, frequency in columns
         ],
         "bifurcations": [
-            {"kind": "Hopf", "value": value, branch.parameter: value, "frequency": frequency}
+            {
+                "kind": "Hopf",
+                "value": value,
+                branch.parameter: value,
+                "error": None,
+                "frequency": frequency,
+                "second_frequency": None,
+            }
             for value, frequency in branch.hopf
         ],
     }
@@ -173,11 +179,9 @@ def _told(answer: dict[str, Any], title: str) -> Told:
 
 
 def _bifurcation_line(one: dict[str, Any]) -> str:
-    error = f" ± {one['error']:.1g}" if "error" in one else ""
-    second = one.get("second_frequency")
+    at = f"{one['value']:.10g}" if one["error"] is None else with_error(one["value"], one["error"])
+    second = one["second_frequency"]
     beside = f", second frequency {second:.6g}" if second is not None else ""
     stability = f", stability {one['stability']}" if "stability" in one else ""
-    return (
-        f"  {one['kind']} at {one['value']:.10g}{error}: {one['frequency']:.7g} cycles per T"
-        f"{beside}{stability}"
-    )
+    left = f" (not converged: {one['not_converged']})" if "not_converged" in one else ""
+    return f"  {one['kind']} at {at}: {one['frequency']:.7g} cycles per T{beside}{stability}{left}"

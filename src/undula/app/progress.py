@@ -1,4 +1,7 @@
-"""Progress of tasks that count what they have done, or approach a value, with a time estimate."""
+"""Progress of tasks that count what they have done or approach a value, with a time estimate.
+
+Of a search nobody knows how far it is from its end; it tells where it is.
+"""
 
 import time
 from collections.abc import Callable, Iterator
@@ -31,5 +34,16 @@ def approached(task: str, start: float, end: float) -> Iterator[Callable[[float]
             part = min(1.0, max(1e-3, (value - start) / (end - start)))
             to_go = (time.monotonic() - began) * (1.0 - part) / part
             show(part, f"at {value:.6g} of {end:.6g}, about {duration(to_go)} to go")
+
+        yield tell
+
+
+@contextmanager
+def searching(task: str) -> Iterator[Callable[..., None]]:
+    """Yield a function to be called with the number of links, and the force that was reached."""
+    with meter(task) as show:
+
+        def tell(links: int, force: float | None = None) -> None:
+            show(0.0, f"{links} links" if force is None else f"{links} links, force {force:.6g}")
 
         yield tell

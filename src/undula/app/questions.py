@@ -1,12 +1,17 @@
 """The commands that answer by solving instead of running: stability, find, follow, threshold."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from undula.app.options import Changes, Converge, Input, Json, Overwrite, Plot
 from undula.errors import InputError
+
+if TYPE_CHECKING:
+    from undula.app.answers import Told
 
 
 def stability(
@@ -59,12 +64,14 @@ def find(
 ) -> int:
     """Solve for a spinning or a flapping state, and tell whether it is stable."""
     from undula.app import finding
-    from undula.app.answers import DONE, reply
+    from undula.app.answers import DONE, notice, reply
+    from undula.app.compiling import compilation_announced
     from undula.studies.build import build_model
     from undula.studies.spec import read_filament_input
 
     wanted = read_filament_input(file, changes or ())
-    told = finding.find(build_model(wanted), kind, converge=converge, title=wanted.load_text)
+    with compilation_announced(notice):
+        told = finding.find(build_model(wanted), kind, converge=converge, title=wanted.load_text)
     reply(told.answer, told.text, as_json=as_json)
     return DONE
 
@@ -90,7 +97,8 @@ def follow(
 ) -> int:
     """Follow a state along a parameter, with its stability and its bifurcations."""
     from undula.analysis.straight_branch import StraightBranch
-    from undula.app.answers import DONE, reply
+    from undula.app.answers import DONE, notice, reply
+    from undula.app.compiling import compilation_announced
     from undula.app.following import Way, follow_along
     from undula.studies.build import build_model
     from undula.studies.ranges import parse_way
@@ -99,15 +107,19 @@ def follow(
     wanted = read_filament_input(file, changes or ())
     way = Way(*parse_way("--along", along))
     _claim_figure(plot, overwrite=overwrite)
+    stored = _runs_to_draw(kind, way.parameter, plot, runs or ())
     title = wanted.load.tell({way.parameter.removeprefix("load.")})
-    told, branch = follow_along(build_model(wanted), kind, way, converge=converge, title=title)
-    if plot is not None and branch is not None:
+    with compilation_announced(notice):
+        told, branch = follow_along(build_model(wanted), kind, way, converge=converge, title=title)
+    drawn = None if branch is None else plot
+    if drawn is not None:
         from undula.app.drawing import draw_branch, draw_straight
 
         if isinstance(branch, StraightBranch):
-            draw_straight(branch, plot, title=title)
-        else:
-            draw_branch(branch, runs or (), plot, title=title)
+            draw_straight(branch, drawn, title=title)
+        elif branch is not None:
+            draw_branch(branch, stored, drawn, title=title)
+    told = _with_figure(told, drawn)
     reply(told.answer, told.text, as_json=as_json)
     return DONE
 
@@ -131,7 +143,8 @@ def threshold(
     as_json: Json = False,
 ) -> int:
     """Find the force at which a state gains or loses stability, also along a parameter."""
-    from undula.app.answers import DONE, reply
+    from undula.app.answers import DONE, notice, reply
+    from undula.app.compiling import compilation_announced
     from undula.app.thresholding import tell_threshold, tell_thresholds
     from undula.studies.build import build_model
     from undula.studies.ranges import parse_axis
@@ -143,18 +156,43 @@ def threshold(
         if plot is not None:
             raise InputError("--plot draws a curve; give --along as well")
         title = wanted.load.tell({"force"})
-        told = tell_threshold(model, name, converge=converge, title=title)
+        with compilation_announced(notice):
+            told = tell_threshold(model, name, converge=converge, title=title)
     else:
         axis = parse_axis("--along", along)
         _claim_figure(plot, overwrite=overwrite)
         title = wanted.load.tell({"force", axis[0].removeprefix("load.")})
-        told, found = tell_thresholds(model, name, axis, converge=converge, title=title)
+        with compilation_announced(notice):
+            told, found = tell_thresholds(model, name, axis, converge=converge, title=title)
         if plot is not None:
             from undula.app.drawing import draw_thresholds
 
             draw_thresholds(name, axis, found, plot, title=title)
+    told = _with_figure(told, plot)
     reply(told.answer, told.text, as_json=as_json)
     return DONE
+
+
+def _with_figure(told: "Told", figure: Path | None) -> "Told":
+    """Return what is told with the name of the figure that shows it, null without one."""
+    text = told.text if figure is None else f"{told.text}\n  figure  {figure}"
+    answer = told.answer | {"figure": None if figure is None else str(figure)}
+    return replace(told, answer=answer, text=text)
+
+
+def _runs_to_draw(kind: str, parameter: str, plot: Path | None, runs: Sequence[Path]) -> list[Any]:
+    """Return the stored runs, having refused what cannot be drawn before anything is computed."""
+    if runs and (plot is None or kind == "straight"):
+        raise InputError("--run draws a dot beside spinning or flapping; give --plot for these")
+    if plot is not None and kind == "straight":
+        from undula.app.drawing import check_straight
+
+        check_straight(parameter)
+    if not runs:
+        return []
+    from undula.studies.store import load_result
+
+    return [load_result(run) for run in runs]
 
 
 def _claim_figure(path: Path | None, *, overwrite: bool) -> None:

@@ -4,14 +4,15 @@ from typing import Any
 
 from undula.analysis.thresholds import Threshold, threshold, threshold_curve
 from undula.app.answers import Told
-from undula.app.progress import counted
+from undula.app.progress import counted, searching
 from undula.app.run_text import with_error
 from undula.models.model import Model
 
 
 def tell_threshold(model: Model, name: str, *, converge: bool, title: str) -> Told:
     """Find one threshold."""
-    found = threshold(model, name, converged=converge)
+    with searching(name) as tell:
+        found = threshold(model, name, converged=converge, progress=tell)
     answer = {"status": "done", "threshold": name} | _answer(found)
     return Told(answer, f"{title}: {name} {_line(found)}")
 

@@ -182,7 +182,7 @@ def located(
     scale: float,
     tolerance: float,
 ) -> Point | None:
-    """Return the point between two neighbours at which a test function changes its sign.
+    """Return the point between two neighbours at which a test function changes its sign, if any.
 
     Parameters
     ----------
@@ -211,6 +211,8 @@ def located(
             found[length] = point
         return test(found[length])
 
+    if value(0.0) * value(whole) > 0.0:
+        return None
     try:
         at = brentq(value, 0.0, whole, xtol=tolerance)
     except ArithmeticError:
