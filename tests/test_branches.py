@@ -7,10 +7,15 @@ from typing import Self
 import numpy as np
 import pytest
 
+from refusal import complaint
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, follow_branch
 from undula.analysis.observables import Range
+from undula.analysis.stability import critical_force
+from undula.analysis.straight_branch import follow_straight
 from undula.arrays import Array, ComplexArray
+from undula.models.filament import Filament
+from undula.models.loads import PointLoad, TipLoad
 from undula.numerics.continuation import Steps
 from undula.numerics.problem import DenseLinear, Evaluation
 
@@ -333,3 +338,50 @@ def test_values_and_states_belong_together() -> None:
     assert len(branch.states) == branch.values.size
     for p, state in zip(branch.values, branch.states, strict=True):
         assert state.u[:4] @ state.u[:4] == pytest.approx(GROWTH * p, rel=1e-12)
+
+
+# ---------------------------------------------------------------- the straight state
+
+
+@pytest.mark.parametrize(("start", "to"), [(20.0, 60.0), (60.0, 20.0)])
+def test_the_straight_state_along_the_force_is_lost_at_the_critical_force(
+    start: float, to: float
+) -> None:
+    model = Filament(20, TipLoad(75.0))
+    branch = follow_straight(model, "load.force", start, to)
+    onset = critical_force(model).hopf
+    assert onset is not None
+    ((force, frequency),) = branch.hopf
+    # Both find the same zero of a rate that is known to round-off of the fastest decay.
+    assert force == pytest.approx(onset.force, rel=1e-10)
+    assert frequency == pytest.approx(onset.frequency, rel=1e-10)
+    assert branch.values[[0, -1]] == pytest.approx([start, to], abs=0.0)
+    np.testing.assert_array_equal(branch.rates > 0.0, branch.values > onset.force)
+    assert branch.rates.shape == branch.frequencies.shape == branch.values.shape
+
+
+def test_along_the_position_of_a_load_both_sides_of_the_curve_of_thresholds_are_found() -> None:
+    # The Hopf force of a point load is least at about 0.78, and 37.7 at the tip.
+    model = Filament(20, PointLoad(37.0, 0.8))
+    branch = follow_straight(model, "load.position", 0.6, 1.0)
+    (one, frequency), (other, _) = branch.hopf
+    assert 0.6 < one < 0.78 < other < 1.0
+    for position, each in branch.hopf:
+        onset = critical_force(model.with_(position=position)).hopf
+        assert onset is not None
+        assert onset.force == pytest.approx(37.0, rel=1e-9)
+        assert onset.frequency == pytest.approx(each, rel=1e-9)
+    between = (branch.values > one) & (branch.values < other)
+    np.testing.assert_array_equal(branch.rates > 0.0, between)
+    at = np.interp(one, branch.values, branch.frequencies)
+    assert at == pytest.approx(frequency, rel=1e-3)
+
+
+def test_where_nothing_crosses_nothing_is_found() -> None:
+    assert follow_straight(Filament(20, TipLoad(75.0)), "load.force", 21.0, 37.0).hopf == ()
+
+
+def test_a_parameter_that_is_none_is_refused() -> None:
+    model = Filament(20, TipLoad(75.0))
+    assert "model.length" in complaint(lambda: follow_straight(model, "model.length", 1.0, 2.0))
+    assert "segments" in complaint(lambda: follow_straight(model, "model.segments", 10.0, 20.0))

@@ -1,6 +1,7 @@
 """undula: elastic microfilaments in viscous fluid under axial follower forces.
 
-Build a model (`Filament` and a load), give it a start, and `integrate`; see docs/index.md.
+Build a model (`Filament` and a load), give it a start, and `integrate`, or solve for what it ends in
+with `find_spinning` and `find_flapping`; see docs/index.md.
 Each name is imported when it is first asked for, so that the command line answers at once.
 """
 
@@ -10,15 +11,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import undula.analysis.observables as observables
     import undula.views as views
+    from undula.analysis.flapping import find_flapping
     from undula.analysis.integrate import integrate
+    from undula.analysis.kinds import converged, follow
     from undula.analysis.record import dataset_of
     from undula.analysis.run import Run
+    from undula.analysis.spinning import find_spinning
     from undula.analysis.stability import (
         critical_curve,
         critical_force,
         growth_curve,
         spectrum,
     )
+    from undula.analysis.states import Flapping, Spinning
+    from undula.analysis.thresholds import threshold, threshold_curve
     from undula.errors import InputError
     from undula.models.filament import Filament
     from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
@@ -29,6 +35,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Filament": "undula.models.filament",
+    "Flapping": "undula.analysis.states",
     "InputError": "undula.errors",
     "LinearLoad": "undula.models.loads",
     "Load": "undula.models.loads",
@@ -37,11 +44,16 @@ _HOMES = {
     "ProfileLoad": "undula.models.profiles",
     "Run": "undula.analysis.run",
     "Scales": "undula.models.scales",
+    "Spinning": "undula.analysis.states",
     "TableLoad": "undula.models.profiles",
     "TipLoad": "undula.models.loads",
+    "converged": "undula.analysis.kinds",
     "critical_curve": "undula.analysis.stability",
     "critical_force": "undula.analysis.stability",
     "dataset_of": "undula.analysis.record",
+    "find_flapping": "undula.analysis.flapping",
+    "find_spinning": "undula.analysis.spinning",
+    "follow": "undula.analysis.kinds",
     "from_state": "undula.models.starts",
     "growth_curve": "undula.analysis.stability",
     "helix": "undula.models.starts",
@@ -52,12 +64,15 @@ _HOMES = {
     "planar": "undula.models.starts",
     "spectrum": "undula.analysis.stability",
     "straight": "undula.models.starts",
+    "threshold": "undula.analysis.thresholds",
+    "threshold_curve": "undula.analysis.thresholds",
 }
 
 _ROOMS = {"observables": "undula.analysis.observables", "views": "undula.views"}
 
 __all__ = [
     "Filament",
+    "Flapping",
     "InputError",
     "LinearLoad",
     "Load",
@@ -66,11 +81,16 @@ __all__ = [
     "ProfileLoad",
     "Run",
     "Scales",
+    "Spinning",
     "TableLoad",
     "TipLoad",
+    "converged",
     "critical_curve",
     "critical_force",
     "dataset_of",
+    "find_flapping",
+    "find_spinning",
+    "follow",
     "from_state",
     "growth_curve",
     "helix",
@@ -82,6 +102,8 @@ __all__ = [
     "planar",
     "spectrum",
     "straight",
+    "threshold",
+    "threshold_curve",
     "views",
 ]
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from undula.arrays import Array
+from undula.errors import InputError
 from undula.numerics.banded import to_dense
 from undula.numerics.closure import Closure
 from undula.numerics.flow import RADAU_5, ByParameter, Flow, flow
@@ -166,11 +167,24 @@ def admissible(equations: Equations, y: Array) -> Array:
 
 
 def _difference(equations_at: Callable[[float], Equations], p: float) -> ByParameter:
-    """Return the derivative of the residual by the parameter, by a central difference."""
+    """Return the derivative of the residual by the parameter, by a central difference.
+
+    At an end of the parameter's range the difference is one-sided, and good to fewer digits.
+    """
     delta = _PART * (abs(p) or 1.0)
-    more, less = equations_at(p + delta), equations_at(p - delta)
+    (less, low), (more, high) = (_beside(equations_at, p, side * delta) for side in (-1.0, 1.0))
 
     def by_parameter(y: Array, w: Array) -> Array:
-        return (more.residual(y, w) - less.residual(y, w)) / (2.0 * delta)
+        return (more.residual(y, w) - less.residual(y, w)) / (high - low)
 
     return by_parameter
+
+
+def _beside(
+    equations_at: Callable[[float], Equations], p: float, away: float
+) -> tuple[Equations, float]:
+    """Return the equations beside a parameter, or at it if they are not defined there."""
+    try:
+        return equations_at(p + away), p + away
+    except InputError:
+        return equations_at(p), p
