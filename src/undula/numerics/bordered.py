@@ -65,7 +65,7 @@ class BorderedBand:
     corner : ndarray of shape (q, q)
         D.
     soft : int, optional
-        An index at which the null vector of a singular A is large.
+        An index at which both null vectors of a singular A, right and left, are not small.
     """
 
     def __init__(
