@@ -22,14 +22,17 @@ def changed(model: Model, parameter: str, value: float) -> Model:
     InputError
         There is no such parameter, or the value is out of its range.
     """
-    known = _numbers(model)
-    if parameter not in known:
-        raise InputError(f"{parameter} is no number of this model; take {' or '.join(known)}")
-    if known[parameter] not in (int, "int"):
-        return model.with_(**{parameter.split(".")[1]: float(value)})
+    place, _, name = parameter.partition(".")
+    owner: Any = model.load if place == "load" else model if place == "model" else None
+    field = getattr(owner, "__dataclass_fields__", {}).get(name)
+    if field is None or not field.init or not is_number(getattr(owner, name)):
+        known = " or ".join(_numbers(model))
+        raise InputError(f"{parameter} is no number of this model; take {known}")
+    if field.type not in (int, "int"):
+        return model.with_(**{name: float(value)})
     if value != round(value):
         raise InputError(f"{parameter} = {value!r} has to be a whole number")
-    return model.with_(**{parameter.split(".")[1]: int(value)})
+    return model.with_(**{name: int(value)})
 
 
 def value_of(model: Model, parameter: str) -> float:
