@@ -22,7 +22,7 @@ help:
 	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint       style, types and import rules"
 	@echo "make docs       build the documentation into site/"
-	@echo "make bench      cost per step and per period"
+	@echo "make bench      cost per step and per period, and of states solved for"
 	@echo "make clean      remove what the other commands made, results excepted"
 
 run: $(RUN)
@@ -45,6 +45,7 @@ docs: $(DEV)
 
 bench: $(RUN)
 	$(BIN)/python benchmarks/step_cost.py
+	$(BIN)/python benchmarks/state_cost.py
 
 clean:
 	rm -rf $(VENV) site build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis .benchmarks

@@ -1,5 +1,6 @@
 """The command `undula`. Nothing heavy is imported before a command needs it."""
 
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,6 +11,9 @@ import typer
 from undula.app.options import Budget, Changes, Input, Json, NoMovie, Overwrite, Result
 from undula.app.questions import find, follow, stability, threshold
 from undula.errors import InputError
+
+# Matrices here are small: a second thread of the linear algebra makes them slower, not faster.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 app = typer.Typer(
     name="undula",
