@@ -89,7 +89,7 @@ def test_what_flapping_gives_birth_to_ends_where_spinning_is_lost(gained: Thresh
     assert fold.state.shape_frequency == pytest.approx(lost.second_frequency, rel=1e-5)
 
 
-def test_only_a_symmetry_breaking_of_flapping_gives_birth(gained: Threshold) -> None:
+def test_only_a_symmetry_breaking_of_flapping_gives_birth() -> None:
     spinning = threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
     assert "torus of Spinning" in complaint(lambda: follow_born(known(spinning), 300.0))
 

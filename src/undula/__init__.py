@@ -1,7 +1,7 @@
 """undula: elastic microfilaments in viscous fluid under axial follower forces.
 
-Build a model (`Filament` and a load), give it a start, and `integrate`, or solve for what it ends in
-with `find_spinning` and `find_flapping`; see docs/index.md.
+Build a model (`Filament` and a load), give it a start, and `integrate`, or solve for what it ends
+in with `find_spinning` and `find_flapping`; see docs/index.md.
 Each name is imported when it is first asked for, so that the command line answers at once.
 """
 

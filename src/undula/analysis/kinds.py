@@ -33,6 +33,8 @@ KindName = Literal["spinning", "flapping"]
 
 # A branch is stepped along in parts of the way that it is asked to go.
 _PARTS = 8.0
+# From so many links on fewer of them tell the error as well.
+_MANY = 36
 # Arclength between a Hopf point and the first point of a branch.
 _AWAY = 0.03
 
@@ -129,10 +131,10 @@ def with_error(state: Spinning | Flapping) -> Spinning | Flapping:
     """Return the state with the error of its frequency against many links, if there is a limit.
 
     The state is solved for once more with two thirds of the links, or twice as many if they are
-    few; the error falls as the square of their number.
+    few; the error falls as the square of their number, which flapping shows from some 24 on.
     """
     links = state.model.links
-    other_links = 2 * links // 3 if links >= 12 else 2 * links
+    other_links = 2 * links // 3 if links >= _MANY else 2 * links
     other = state.model.with_links(other_links)
     if other is None:
         return state

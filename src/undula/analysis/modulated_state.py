@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from undula.analysis.observables import Range, tip_height, tip_radius
+from undula.analysis.observables import Range, tip_height, tip_radius, winding_angle
 from undula.analysis.periodic import over_period
 from undula.arrays import Array, ComplexArray, Shapes
 from undula.models.model import Model
@@ -52,10 +52,24 @@ class Modulated:
         """Total follower force [B/L^2]."""
         return self.model.load.force
 
+    @cached_property
+    def turned(self) -> float:
+        """The angle by which the motion has turned after `duration`, full turns counted [rad].
+
+        The equations know it up to full turns only; the filament's deflection tells the rest.
+        """
+        nodes = self.nodes
+        cosine, sine = np.cos(self.angle), np.sin(self.angle)
+        start = nodes[-1:].copy()
+        start[..., :2] = start[..., :2] @ np.array([[cosine, -sine], [sine, cosine]])
+        winding = winding_angle(np.concatenate([start, nodes]))
+        full_turns = np.round((winding[-1] - winding[0] - self.angle) / (2.0 * np.pi))
+        return float(self.angle + 2.0 * np.pi * full_turns)
+
     @property
     def frequency(self) -> float:
         """Turns per T, in the mean."""
-        return abs(self.angle) / (2.0 * np.pi * self.duration)
+        return abs(self.turned) / (2.0 * np.pi * self.duration)
 
     @property
     def shape_frequency(self) -> float:
