@@ -17,8 +17,6 @@ Run it with `python examples/second_transition.py [FIGURE.png]`; it takes half a
 import sys
 
 import undula as un
-from undula.analysis.modulated import follow_born
-from undula.views import bifurcation_diagram
 
 SEGMENTS = 20
 
@@ -30,7 +28,7 @@ def main(figure: str = "second_transition.png") -> None:
     flapping = un.follow(un.find_flapping(model), "load.force", 230.0)
     (lost,) = (one for one in spinning.bifurcations if one.loses)
     (gained,) = (one for one in flapping.bifurcations if one.gains)
-    between = follow_born(gained, 1.02 * lost.value)
+    between = un.follow_born(gained, 1.02 * lost.value)
 
     print(f"flapping is gained at F = {gained.value:.6g}, {gained.kind}")
     print(f"spinning is lost at   F = {lost.value:.6g}, {lost.kind}")
@@ -40,7 +38,7 @@ def main(figure: str = "second_transition.png") -> None:
     # The last one lies on the first two where it is born and where it dies.
     assert abs(fold.value - lost.value) < 1e-3
     title = f"tip load, {SEGMENTS} segments"
-    bifurcation_diagram([spinning, flapping, between], title=title).savefig(figure)
+    un.views.bifurcation_diagram([spinning, flapping, between], title=title).savefig(figure)
 
 
 if __name__ == "__main__":

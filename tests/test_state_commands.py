@@ -294,7 +294,7 @@ def test_where_there_is_no_state_to_begin_at_nothing_is_followed_or_drawn(ask: A
 # ---------------------------------------------------------------- threshold
 
 
-@pytest.mark.parametrize("name", ["onset", "spinning-lost", "flapping-gained"])
+@pytest.mark.parametrize("name", ["onset", "spinning-lost"])
 def test_a_threshold_is_answered_with_what_python_computes(name: str, ask: Ask) -> None:
     found = answer(ask("threshold", name, *FEW, "--json"))
     single = un.threshold(EIGHT, name)

@@ -77,6 +77,14 @@ def test_a_threshold_is_where_the_leading_rate_of_the_state_changes_its_sign(
         assert found.second_frequency == pytest.approx(turns, rel=1e-6)
 
 
+def test_a_threshold_tells_itself_in_one_line() -> None:
+    found = of_eight("spinning-lost")
+    assert str(found).startswith(f"spinning-lost at force {value_of(found):.10g} +- ")
+    assert "torus" in str(found)
+    none = Threshold("spinning-lost", None, reason="it stays stable")
+    assert str(none) == "no spinning-lost: it stays stable"
+
+
 def test_spinning_is_lost_and_flapping_gained_at_forces_of_their_own() -> None:
     lost, gained = value_of(of_eight("spinning-lost")), value_of(of_eight("flapping-gained"))
     # Both states are stable between the two: where a motion ends depends on where it starts.
@@ -89,7 +97,11 @@ def test_spinning_is_lost_and_flapping_gained_at_forces_of_their_own() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "ratios"), [("spinning-lost", [1.5, 2.0, 2.5]), ("flapping-gained", [2.0, 2.2])]
+    ("kind", "ratios"),
+    [
+        ("spinning-lost", [1.5, 2.0, 2.5]),
+        pytest.param("flapping-gained", [2.0, 2.2], marks=pytest.mark.slow),
+    ],
 )
 def test_a_curve_holds_the_thresholds_of_single_searches(kind: str, ratios: list[float]) -> None:
     seen: list[tuple[int, int]] = []

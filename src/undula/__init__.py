@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import undula.analysis.observables as observables
     import undula.views as views
+    from undula.analysis.births import births
     from undula.analysis.flapping import find_flapping
     from undula.analysis.integrate import integrate
-    from undula.analysis.kinds import converged, follow
+    from undula.analysis.kinds import converged, follow, follow_from_onset
+    from undula.analysis.modulated import find_modulated, follow_born
     from undula.analysis.record import dataset_of
     from undula.analysis.run import Run
     from undula.analysis.spinning import find_spinning
@@ -47,13 +49,17 @@ _HOMES = {
     "Spinning": "undula.analysis.states",
     "TableLoad": "undula.models.profiles",
     "TipLoad": "undula.models.loads",
+    "births": "undula.analysis.births",
     "converged": "undula.analysis.kinds",
     "critical_curve": "undula.analysis.stability",
     "critical_force": "undula.analysis.stability",
     "dataset_of": "undula.analysis.record",
     "find_flapping": "undula.analysis.flapping",
+    "find_modulated": "undula.analysis.modulated",
     "find_spinning": "undula.analysis.spinning",
     "follow": "undula.analysis.kinds",
+    "follow_born": "undula.analysis.modulated",
+    "follow_from_onset": "undula.analysis.kinds",
     "from_state": "undula.models.starts",
     "growth_curve": "undula.analysis.stability",
     "helix": "undula.models.starts",
@@ -84,13 +90,17 @@ __all__ = [
     "Spinning",
     "TableLoad",
     "TipLoad",
+    "births",
     "converged",
     "critical_curve",
     "critical_force",
     "dataset_of",
     "find_flapping",
+    "find_modulated",
     "find_spinning",
     "follow",
+    "follow_born",
+    "follow_from_onset",
     "from_state",
     "growth_curve",
     "helix",

@@ -60,6 +60,15 @@ class Threshold:
     reason: str | None = None
     at: Bifurcation[Any] | None = None
 
+    def __str__(self) -> str:
+        """Tell it in one line."""
+        if self.value is None:
+            return f"no {self.kind}: {self.reason}"
+        return (
+            f"{self.kind} at force {self.value:.10g} +- {self.error:.1g}, {self.bifurcation},"
+            f" {self.frequency:.8g} cycles per T"
+        )
+
 
 @dataclass(frozen=True)
 class _Search:
