@@ -341,3 +341,13 @@ def test_runs_on_either_side_of_the_threshold_decay_and_grow_as_predicted(
     # 1 per cent is what is asked; what is left is the error of the steps, some 1e-4.
     assert motion.rate == pytest.approx(predicted.rates[0], rel=1e-2)
     assert motion.frequency == pytest.approx(predicted.frequencies[0], rel=1e-2)
+
+
+def test_a_force_that_extensible_links_cannot_bear_is_refused() -> None:
+    soft = Filament(12, TipLoad(1.0), inextensibility="weak", tensile_stiffness=100.0)
+    assert "larger tensile_stiffness" in complaint(lambda: spectrum(soft, 500.0))
+    assert "larger tensile_stiffness" in complaint(lambda: growth_curve(soft, [1.0, 500.0]))
+
+
+def test_a_number_beyond_all_floats_is_refused() -> None:
+    assert "finite" in complaint(lambda: TipLoad(10**400))

@@ -14,4 +14,9 @@ class InputError(ValueError):
 
 def is_number(value: Any) -> bool:
     """Tell whether a value is a finite real number, which true, false and texts are not."""
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False  # a whole number beyond what a float holds

@@ -212,7 +212,7 @@ def linearised(model: Model, method: Method | None = None) -> Linearisation:
     """
     if method is None:
         method = "discrete" if model.continuum is None else "spectral"
-    if method not in _METHODS:
+    if not isinstance(method, str) or method not in _METHODS:
         raise InputError(f"method = {method!r} is not known; use 'spectral', 'modes' or 'discrete'")
     return _METHODS[method](model)
 

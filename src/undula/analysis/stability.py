@@ -22,7 +22,7 @@ from undula.analysis.parameters import changed
 from undula.arrays import Array, ComplexArray
 from undula.errors import InputError, is_number
 from undula.models.model import Model
-from undula.numerics.pencil import eigenpairs, eigenvalues
+from undula.numerics.pencil import Pencil, eigenpairs, eigenvalues
 
 #: Called with the number of points done and the number of all.
 Progress = Callable[[int, int], None]
@@ -101,7 +101,7 @@ def spectrum(
     force = float(model.load.force)
     linearisation = _resolved(linearised(model, method), force)
     pencil, slowness = linearisation.pencil, _slowness(model, paper_time)
-    values, vectors = eigenpairs(pencil.stiffness(force), pencil.mass)
+    values, vectors = eigenpairs(_stiffness(pencil, force), pencil.mass)
     # The upper one of a pair comes first: after an odd one its partner follows.
     count += 1 if values[:count][-1].imag > 0.0 else 0
     s, modes = linearisation.shape(vectors[:, :count])
@@ -211,7 +211,7 @@ def _resolved(linearisation: Linearisation, force: float) -> Linearisation:
     """Return the linearisation, refined until its leading eigenvalue is settled."""
     while True:
         pencil = linearisation.pencil
-        first = eigenvalues(pencil.stiffness(force), pencil.mass)[:1]
+        first = eigenvalues(_stiffness(pencil, force), pencil.mass)[:1]
         finer = linearisation.finer()
         settled = _errors(linearisation, force, first)[0] <= _SETTLED * abs(first[0])
         if finer is None or settled:
@@ -232,13 +232,24 @@ def _errors(linearisation: Linearisation, force: float, values: ComplexArray) ->
     return np.asarray(factor * nearest + round_off)
 
 
+def _stiffness(pencil: Pencil, force: float) -> Array:
+    """Return the stiffness under a force that the links can bear."""
+    stiffness = pencil.stiffness(force)
+    if not np.isfinite(stiffness).all():
+        raise InputError(
+            f"force = {force!r} pushes extensible links beyond their length; give a smaller force,"
+            " or a larger tensile_stiffness"
+        )
+    return stiffness
+
+
 def _leading(model: Model, forces: Array, method: Method | None) -> Array:
     """Return rate, angular frequency and error of the leading eigenvalue, shape (m, 3)."""
     linearisation = _resolved(linearised(model, method), float(forces.max()))
     pencil = linearisation.pencil
     rows = []
     for force in forces:
-        first = eigenvalues(pencil.stiffness(force), pencil.mass)[:1]
+        first = eigenvalues(_stiffness(pencil, force), pencil.mass)[:1]
         error = _errors(linearisation, force, first)[0]
         rows.append((first[0].real, abs(first[0].imag), error))
     return np.array(rows)

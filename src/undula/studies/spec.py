@@ -140,10 +140,10 @@ def read_stability_input(path: Path | None = None, overrides: Sequence[str] = ()
 def _read(record: type[Input], path: Path | None, overrides: Sequence[str]) -> Input:
     given = apply_overrides({} if path is None else read_toml(path), overrides)
     _checked(_WholeFile, given)
-    for name in apply_overrides({}, overrides):
-        if name not in record.model_fields:
+    for override in overrides:
+        if override.partition(".")[0].strip() not in record.model_fields:
             raise InputError(
-                f"--set {name}. changes a table that this command does not read; it reads"
+                f"--set {override} changes a table that this command does not read; it reads"
                 f" {', '.join(f'[{known}]' for known in record.model_fields)}"
             )
     return _checked(record, {name: given[name] for name in record.model_fields if name in given})

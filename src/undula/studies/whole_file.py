@@ -79,12 +79,11 @@ def _folder_trouble_told(path: Path) -> Iterator[None]:
         if error.errno in _FULL:
             raise InputError(
                 f"the disk that holds {path.parent} is full; free some space or choose another"
-                " folder with --out"
+                " folder"
             ) from error
         reason = error.strerror or error
         raise InputError(
             f"cannot write {path.name} in {path.parent} ({reason}); choose a writable folder"
-            " with --out"
         ) from error
 
 
