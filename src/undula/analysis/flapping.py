@@ -39,8 +39,9 @@ FORCE = "load.force"
 # Steps of half a beat: with 3 stages the relative error of the frequency is then some 1e-7, which
 # each answer states for itself.
 INTERVALS = 32
-# The run that a beat is taken from: a start large enough to be quick, and how long it may take.
-_START, _LONGEST = 0.3, 6.0
+# The run that a beat is taken from: a start large enough to be quick, and how many beats it may
+# take, counted as if their time fell as the force grows beyond the onset.
+_START, _BEATS = 0.3, 200.0
 
 
 def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping | NotFound:
@@ -142,17 +143,30 @@ def _start_and_half_period(
 ) -> tuple[Array, float] | NotFound:
     if isinstance(guess, Flapping):
         return _positions(flat, guess.nodes[-1]), 0.5 * guess.period
-    run = guess or integrate(flat, planar(flat, _START), until="settled", limit=_LONGEST)
+    run = guess or integrate(flat, planar(flat, _START), until="settled", limit=_longest(flat))
     if run.frequency is None or run.frequency.value == 0.0:
         whose = "given" if guess else "confined"
         return NotFound(f"the {whose} run does not beat ({run.verdict.name}): {_onset_text(flat)}")
     return _positions(flat, run.motion.nodes[-1]), 0.5 / abs(run.frequency.value)
 
 
+def _longest(flat: Model) -> float:
+    """Return how long a beat may take to settle [T]: beats are the shorter the larger the force."""
+    pair = first_pair(linearised(flat, "discrete"))
+    if pair is None:
+        return _BEATS
+    return _BEATS * 2.0 * np.pi / pair.omega * pair.p / max(pair.p, flat.load.force)
+
+
 def _onset_text(flat: Model) -> str:
     pair = first_pair(linearised(flat, "discrete"))
     if pair is None:
         return "the straight state stays stable, so that no beat begins at it"
+    if flat.load.force > pair.p:
+        return (
+            "it settles to no beat; follow the branch from a smaller force, or give the beat found"
+            " there as a guess"
+        )
     return f"planar flapping begins at force {pair.p:.6g}, and this one is {flat.load.force:.6g}"
 
 
