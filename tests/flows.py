@@ -9,6 +9,7 @@ Bead drawn along the unit circle after a moving point, unknowns (x, y, l, s), wi
     x' = K (cos p, sin p) + (cos s) J x + l x,    |x| = 1,    s' = 1;    x = (cos p, sin p), l = -K.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,17 +30,19 @@ def banded(matrix: Array, half: int) -> Array:
     return band
 
 
-class Written:
+class Written(ABC):
     """What systems have in common that give a residual w - f and its derivative by y, `slope`."""
 
     multipliers: tuple[int, ...] = ()
     size = 2
 
+    @abstractmethod
     def residual(self, y: Array, w: Array) -> Array:
-        raise NotImplementedError
+        """Return w - f and the constraints."""
 
+    @abstractmethod
     def slope(self, y: Array) -> Array:
-        raise NotImplementedError
+        """Return the derivative of the residual by y."""
 
     @property
     def drag(self) -> Array:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from undula.analysis.curve_values import checked_forces, checked_values, models_along
 from undula.analysis.linear_results import (
     CriticalCurve,
     Crossing,
@@ -18,9 +19,8 @@ from undula.analysis.linear_results import (
 )
 from undula.analysis.linearisations import Linearisation, linearised
 from undula.analysis.onset import find_onset
-from undula.analysis.parameters import changed
 from undula.arrays import Array, ComplexArray
-from undula.errors import InputError, is_number
+from undula.errors import InputError
 from undula.models.model import Model
 from undula.numerics.pencil import Pencil, eigenpairs, eigenvalues
 
@@ -147,11 +147,11 @@ def growth_curve(
     """
     if (parameter is None) != (values is None):
         raise InputError("a parameter and its values go together; give both or none")
-    forces = np.array([_force(force) for force in _some("forces", forces)])
-    given = None if values is None else _numbers(values)
+    forces = checked_forces(forces)
+    given = None if values is None else checked_values(values)
     models = [model]
     if parameter is not None and given is not None:
-        models = _models(model, parameter, given)
+        models = models_along(model, parameter, given)
     rows = []
     for done, each in enumerate(models, start=1):
         rows.append(_leading(each, forces, method) / _slowness(each, paper_time))
@@ -197,8 +197,8 @@ def critical_curve(
     InputError
         An argument is out of its range, or the model does not know the method or the parameter.
     """
-    given = _numbers(values)
-    models = _models(model, parameter, given)
+    given = checked_values(values)
+    models = models_along(model, parameter, given)
     onsets = []
     for done, each in enumerate(models, start=1):
         onsets.append(critical_force(each, method=method, later=0, paper_time=paper_time))
@@ -279,29 +279,3 @@ def _slowness(model: Model, paper_time: bool) -> float:
     if drag_ratio is None:
         raise InputError("paper_time has no meaning for a model without a drag ratio; leave it out")
     return float(drag_ratio)
-
-
-def _some(name: str, values: Sequence[float] | Array) -> Sequence[float] | Array:
-    if np.ndim(values) != 1 or len(values) == 0:
-        raise InputError(f"{name} = {values!r} has to be a list of numbers, one at least")
-    return values
-
-
-def _numbers(values: Sequence[float] | Array) -> Array:
-    for value in _some("values", values):
-        if not is_number(value):
-            raise InputError(f"values: {value!r} has to be a finite number")
-    return np.asarray(values, dtype=float)
-
-
-def _models(model: Model, parameter: str, values: Array) -> list[Model]:
-    """Return the model at each value of a parameter."""
-    if parameter == "load.force":
-        raise InputError("the curve itself is about load.force; take another parameter for it")
-    return [changed(model, parameter, value) for value in values.tolist()]
-
-
-def _force(force: float) -> float:
-    if not (is_number(force) and force >= 0.0):
-        raise InputError(f"force = {force!r} has to be a finite number, at least 0")
-    return float(force)
