@@ -232,8 +232,8 @@ def test_where_nothing_meets_nothing_is_refined() -> None:
     assert refine_coalescence(mixed(meeting(-1.0, -3.0), real(-9.0)), 0.1, -3.0) is None
 
 
-# Mixing with factors from 1e-3 to 1e3 costs digits, which the bound has to tell of. It is for entries
-# that are rounded once; those here are made by two products of six terms each, twelve roundings.
+# Mixing with factors from 1e-3 to 1e3 costs digits, which the bound has to tell of. It is for
+# entries that are rounded once; those here are made by two products of six terms each.
 ROUNDINGS = 12
 
 
