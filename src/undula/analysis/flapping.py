@@ -14,8 +14,9 @@ from undula.analysis.branches import Family
 from undula.analysis.integrate import integrate
 from undula.analysis.linearisations import linearised
 from undula.analysis.onset import first_pair
-from undula.analysis.parameters import changed, value_of
+from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.run import Run
+from undula.analysis.schedule import Ending
 from undula.analysis.states import Flapping, NotFound
 from undula.arrays import Array, ComplexArray
 from undula.models.model import Model
@@ -35,7 +36,6 @@ from undula.numerics.orbits import (
 )
 from undula.numerics.shooting import Shooting, Shot
 
-FORCE = "load.force"
 # Steps of half a beat: with 3 stages the relative error of the frequency is then some 1e-7, which
 # each answer states for itself.
 INTERVALS = 32
@@ -144,6 +144,8 @@ def _start_and_half_period(
     if isinstance(guess, Flapping):
         return _positions(flat, guess.nodes[-1]), 0.5 * guess.period
     run = guess or integrate(flat, planar(flat, _START), until="settled", limit=_longest(flat))
+    if guess is None and run.ending is Ending.INTERRUPTED:
+        raise KeyboardInterrupt  # which a run takes as its end, with what there is
     if run.frequency is None or run.frequency.value == 0.0:
         whose = "given" if guess else "confined"
         return NotFound(f"the {whose} run does not beat ({run.verdict.name}): {_onset_text(flat)}")
@@ -224,11 +226,7 @@ def _exponents(
 ) -> tuple[ComplexArray, float]:
     """Return the exponents of a half-period map, and the error of its known multiplier."""
     judged = floquet(monodromy, direction[:, None], np.array([expected]))
-    # A disturbance that is gone to the last digit has no exponent.
-    multipliers = judged.multipliers[np.abs(judged.multipliers) > np.finfo(float).tiny]
-    exponents = np.asarray(np.log(multipliers) / half, dtype=np.complex128)
-    order = np.lexsort((-exponents.imag, -exponents.real))
-    return exponents[order], float(judged.known_errors[0])
+    return judged.exponents(half), float(judged.known_errors[0])
 
 
 def _named(state: Flapping, index: int) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, follow_branch
@@ -14,9 +14,8 @@ from undula.analysis.flapping import (
     flapping_start,
     flapping_unknowns,
 )
-from undula.analysis.parameters import changed, value_of
+from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.spinning import (
-    FORCE,
     find_spinning,
     spinning_family,
     spinning_judge,
@@ -28,8 +27,6 @@ from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model
 from undula.numerics.continuation import Point, Steps, advance
-
-KindName = Literal["spinning", "flapping"]
 
 # A branch is stepped along in parts of the way that it is asked to go.
 _PARTS = 8.0

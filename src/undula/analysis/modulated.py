@@ -11,7 +11,7 @@ from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, follow_branch
 from undula.analysis.flapping import INTERVALS, flapping_unknowns, in_space
 from undula.analysis.modulated_state import Modulated
-from undula.analysis.parameters import changed, value_of
+from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.run import Run
 from undula.analysis.spinning import require_space
 from undula.analysis.states import Flapping, NotFound
@@ -32,8 +32,6 @@ from undula.numerics.orbits import (
 )
 from undula.numerics.problem import DenseLinear
 from undula.numerics.shooting import Shooting, Shot
-
-FORCE = "load.force"
 
 
 def find_modulated(model: Model, guess: Run | Modulated) -> Modulated | NotFound:
@@ -88,8 +86,7 @@ def modulated_family(state: Modulated, parameter: str, scale: float) -> Family[M
 
 def modulated_unknowns(state: Modulated) -> Array:
     """Return the unknowns of a state in the equations of its family."""
-    turned_back = state.model.rotate(state.model.positions(state.unknowns[-1]), -state.angle)
-    return np.concatenate([turned_back, [state.duration, state.angle]])
+    return np.concatenate([state.start, [state.duration, state.angle]])
 
 
 def follow_born(
@@ -181,16 +178,13 @@ def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -
 def _judged(model: Model, orbit: Orbit) -> Modulated:
     shot = orbit.shot
     judged = floquet_of(shot)
-    # A disturbance that is gone to the last digit has no exponent.
-    multipliers = judged.multipliers[np.abs(judged.multipliers) > np.finfo(float).tiny]
-    exponents = np.asarray(np.log(multipliers) / shot.duration, dtype=np.complex128)
     return Modulated(
         model=model,
         duration=shot.duration,
         angle=shot.angle,
         unknowns=shot.flow.stages[:, -1],
         residual=float(np.abs((shot.end - shot.y)[shot.moving]).max()),
-        exponents=exponents[np.lexsort((-exponents.imag, -exponents.real))],
+        exponents=judged.exponents(shot.duration),
         trivial=tuple(float(error) for error in judged.known_errors),
     )
 

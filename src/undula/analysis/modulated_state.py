@@ -48,6 +48,11 @@ class Modulated:
         return self.model.nodes(self.model.positions(self.unknowns))
 
     @property
+    def start(self) -> Array:
+        """The state of the model at the beginning, shape (size,)."""
+        return self.model.rotate(self.model.positions(self.unknowns[-1]), -self.angle)
+
+    @property
     def force(self) -> float:
         """Total follower force [B/L^2]."""
         return self.model.load.force
@@ -58,11 +63,8 @@ class Modulated:
 
         The equations know it up to full turns only; the filament's deflection tells the rest.
         """
-        nodes = self.nodes
-        cosine, sine = np.cos(self.angle), np.sin(self.angle)
-        start = nodes[-1:].copy()
-        start[..., :2] = start[..., :2] @ np.array([[cosine, -sine], [sine, cosine]])
-        winding = winding_angle(np.concatenate([start, nodes]))
+        start = self.model.nodes(self.start)[None]
+        winding = winding_angle(np.concatenate([start, self.nodes]))
         full_turns = np.round((winding[-1] - winding[0] - self.angle) / (2.0 * np.pi))
         return float(self.angle + 2.0 * np.pi * full_turns)
 

@@ -6,6 +6,9 @@ from typing import Any
 from undula.errors import InputError, is_number
 from undula.models.model import Model
 
+#: The parameter that most questions are about.
+FORCE = "load.force"
+
 
 def changed(model: Model, parameter: str, value: float) -> Model:
     """Return the model with another value of a parameter.

@@ -7,7 +7,7 @@ import numpy as np
 from undula.analysis.branches import Family
 from undula.analysis.linearisations import linearised
 from undula.analysis.onset import first_pair
-from undula.analysis.parameters import changed
+from undula.analysis.parameters import FORCE, changed
 from undula.analysis.relative_equilibrium import TurningShape, rotating_spectrum
 from undula.analysis.run import Run
 from undula.analysis.states import NotFound, Spinning
@@ -17,15 +17,12 @@ from undula.models.model import Model
 from undula.models.starts import from_state
 from undula.numerics.continuation import Point, Steps, follow, located, solved_at
 
-FORCE = "load.force"
 # A branch that has not come to the force after so many steps will hardly do so.
 _MOST_STEPS = 400
 # With more links than this the branch is followed with so many, and only its end refined.
 _FEW_LINKS = 20
 # The target is approached to this share of its size before it is solved for.
 _NEAR = 1e-3
-# A state with tangents this near to the axis [rad] is the straight one.
-_STRAIGHT = 1e-6
 
 
 def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning | NotFound:
@@ -116,8 +113,6 @@ def _solved_from(model: Model, nodes: Nodes, rate: float) -> Spinning | NotFound
     y = model.unknowns(model.admissible(from_state(model, nodes)))
     problem = TurningShape(model, FORCE, y, max(1.0, abs(rate)))
     solved = solved_at(problem, np.append(y, rate), model.load.force)
-    if solved is not None and model.departure(model.positions(solved[0][:-1])) < _STRAIGHT:
-        return NotFound("the straight state is all that Newton's method finds from the guess", 0.0)
     if solved is None:
         residual = float(
             np.abs(problem.evaluate(np.append(y, rate), model.load.force).residual).max()

@@ -16,8 +16,7 @@ from undula.analysis.branches import Progress
 from undula.analysis.convergence import converge
 from undula.analysis.kinds import follow, kind_of
 from undula.analysis.nearby import found_again, quantities_of
-from undula.analysis.parameters import changed
-from undula.analysis.spinning import FORCE
+from undula.analysis.parameters import FORCE, changed
 from undula.analysis.stability import critical_force
 from undula.analysis.states import NotFound
 from undula.errors import InputError

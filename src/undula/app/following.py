@@ -7,8 +7,7 @@ from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.convergence import Converged
 from undula.analysis.kinds import follow, follow_from_onset, kind_of
 from undula.analysis.nearby import limit_of
-from undula.analysis.parameters import changed, value_of
-from undula.analysis.spinning import FORCE
+from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.states import NotFound
 from undula.analysis.straight_branch import StraightBranch, follow_straight
 from undula.app.answers import Told

@@ -43,10 +43,11 @@ class Floquet:
     vectors: ComplexArray
     known_errors: Array
 
-    def growth_rates(self, duration: float) -> Array:
-        """Return the growth rates ln |multiplier| / T (k - t,), -inf for a multiplier of 0."""
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.log(np.abs(self.multipliers)) / duration)
+    def exponents(self, duration: float) -> ComplexArray:
+        """Return ln multiplier / T by falling real part, without those gone to the last digit."""
+        kept = self.multipliers[np.abs(self.multipliers) > np.finfo(float).tiny]
+        values = np.asarray(np.log(kept) / duration, dtype=np.complex128)
+        return values[np.lexsort((-values.imag, -values.real))]
 
 
 def floquet(monodromy: Array, directions: Array, expected: Array) -> Floquet:
