@@ -26,7 +26,7 @@ def complaint_on(**tables: Any) -> str:
             "zzz",
             1,
             "load.zzz is not a known key; the keys of [load] are profile, force, position, slope,"
-            " exponent, s and density",
+            " exponent, s, density and beads",
         ),
         ("load", "a\nb", 1, "load.'a\\nb' is not a known key; the keys of [load] are"),
         (

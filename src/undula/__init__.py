@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from undula.analysis.states import Flapping, Spinning
     from undula.analysis.thresholds import threshold, threshold_curve
     from undula.errors import InputError
+    from undula.models.beads import BeadLoad
+    from undula.models.chain import Chain
     from undula.models.filament import Filament
     from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
     from undula.models.profiles import ProfileLoad, TableLoad
@@ -36,6 +38,8 @@ if TYPE_CHECKING:
     from undula.studies.store import load_result
 
 _HOMES = {
+    "BeadLoad": "undula.models.beads",
+    "Chain": "undula.models.chain",
     "Filament": "undula.models.filament",
     "Flapping": "undula.analysis.states",
     "InputError": "undula.errors",
@@ -77,6 +81,8 @@ _HOMES = {
 _ROOMS = {"observables": "undula.analysis.observables", "views": "undula.views"}
 
 __all__ = [
+    "BeadLoad",
+    "Chain",
     "Filament",
     "Flapping",
     "InputError",

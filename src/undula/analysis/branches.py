@@ -31,7 +31,7 @@ class Family(Generic[S]):
     problem : Problem
         Its equations.
     judge : callable
-        From a problem and its solution (u, p) to the state.
+        From a problem and its solution (u, p) to the state; raises `UnresolvedError` if that fails.
     name : callable
         From the state at a bifurcation and the index of the critical exponent to the kind.
     scale : float
@@ -43,6 +43,10 @@ class Family(Generic[S]):
     judge: Callable[[Any, Array, float], S]
     name: Callable[[S, int], str]
     scale: float
+
+
+class UnresolvedError(ArithmeticError):
+    """A solution that can no longer be turned into a state: its flow is not resolved any more."""
 
 
 #: Called with the value of the parameter that was reached.
@@ -90,8 +94,12 @@ def follow_branch(
     for reached in follow(problem, point, steps, ends):
         if progress:
             progress(reached.p)
-        state = family.judge(problem, reached.u, reached.p)
-        found += _Interval(family, problem, point, reached, (states[-1], state)).bifurcations()
+        try:
+            state = family.judge(problem, reached.u, reached.p)
+            between = _Interval(family, problem, point, reached, (states[-1], state))
+            found += between.bifurcations()
+        except UnresolvedError:
+            break
         states.append(state)
         values.append(reached.p)
         if len(states) >= _MOST_POINTS or any(enough(bifurcation) for bifurcation in found):

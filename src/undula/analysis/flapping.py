@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from undula.analysis.branches import Family
+from undula.analysis.branches import Family, UnresolvedError
 from undula.analysis.integrate import integrate
 from undula.analysis.linearisations import linearised
 from undula.analysis.onset import first_pair
@@ -90,7 +90,8 @@ def flapping_judge(
 
     def judge(problem: OrbitProblem, u: Array, p: float) -> Flapping:
         orbit = orbit_at(problem, u, p)
-        assert orbit is not None  # it was solved for
+        if orbit is None:
+            raise UnresolvedError
         return _judged(changed(model, parameter, p), orbit)
 
     return judge

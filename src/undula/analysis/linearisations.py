@@ -21,7 +21,7 @@ from undula.analysis.bases import Basis, BeamModes, LegendreElements
 from undula.analysis.linear_results import Method
 from undula.arrays import Array, ComplexArray, Points
 from undula.errors import InputError
-from undula.models.loads import Load
+from undula.models.loads import DensityLoad
 from undula.models.model import Model
 from undula.numerics.legendre import gauss
 from undula.numerics.pencil import LinearPencil, Pencil, reduced
@@ -67,7 +67,7 @@ class Linearisation(Protocol):
 class Polynomials:
     """Galerkin's method on piecewise polynomials, with an error that falls exponentially."""
 
-    load: Load
+    load: DensityLoad
     degree: int
     method: ClassVar[Method] = "spectral"
 
@@ -104,7 +104,7 @@ class Polynomials:
 class AssumedModes:
     """Galerkin's method on the free vibrations of a clamped-free beam."""
 
-    load: Load
+    load: DensityLoad
     count: int
     method: ClassVar[Method] = "modes"
 
@@ -217,7 +217,7 @@ def linearised(model: Model, method: Method | None = None) -> Linearisation:
     return _METHODS[method](model)
 
 
-def _galerkin(load: Load, basis: Basis) -> LinearPencil:
+def _galerkin(load: DensityLoad, basis: Basis) -> LinearPencil:
     """Return the pencil of the weak form on a basis."""
     unit = replace(load, force=1.0)
     s, weight = gauss(np.union1d(basis.panels, load.breaks), basis.points)
@@ -244,7 +244,7 @@ def _thinned(breaks: tuple[float, ...], pieces: int) -> tuple[float, ...]:
     return tuple(breaks[round(k)] for k in picked)
 
 
-def _continuum(model: Model) -> Load:
+def _continuum(model: Model) -> DensityLoad:
     if model.continuum is None:
         raise InputError(
             "this model stands for no continuous inextensible filament, which the methods"
@@ -264,6 +264,6 @@ _METHODS: Mapping[str, Callable[[Model], Linearisation]] = {
 }
 
 
-def _polynomials(load: Load) -> Polynomials:
+def _polynomials(load: DensityLoad) -> Polynomials:
     elements = len(_thinned(load.breaks, _MOST_ELEMENTS)) + 1
     return Polynomials(load, max(10, _FIRST_DEGREE // elements))

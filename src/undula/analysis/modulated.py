@@ -8,7 +8,7 @@ so that the new branch is found along the null vector of these equations.
 import numpy as np
 
 from undula.analysis.branch_records import Bifurcation, Branch
-from undula.analysis.branches import Family, Progress, follow_branch
+from undula.analysis.branches import Family, Progress, UnresolvedError, follow_branch
 from undula.analysis.flapping import INTERVALS, flapping_unknowns, in_space
 from undula.analysis.modulated_state import Modulated
 from undula.analysis.parameters import FORCE, changed, value_of
@@ -169,7 +169,8 @@ def _shooting(model: Model, parameter: str) -> Shooting:
 def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -> Family[Modulated]:
     def judge(problem: OrbitProblem, u: Array, p: float) -> Modulated:
         orbit = orbit_at(problem, u, p)
-        assert orbit is not None  # it was solved for
+        if orbit is None:
+            raise UnresolvedError
         return _judged(changed(model, parameter, p), orbit)
 
     return Family(parameter, problem, judge, _named, scale)

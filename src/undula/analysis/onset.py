@@ -108,7 +108,8 @@ def _unbroken(pencil: Pencil, pairs: list[CriticalPair]) -> list[CriticalPair]:
     growing = 0
     for k, pair in enumerate(pairs):
         values = eigenvalues(pencil.stiffness(pair.p), pencil.mass)
-        if np.count_nonzero(values.real > _ON_AXIS * pair.omega) != growing:
+        noise = abs(pair.slope) * pair.round_off
+        if np.count_nonzero(values.real > max(_ON_AXIS * pair.omega, noise)) != growing:
             return pairs[:k]
         growing += 2 if pair.slope > 0.0 else -2
     return pairs
@@ -224,8 +225,8 @@ def _believed(onset: Onset) -> Onset:
 
 
 def _is_believed(crossing: Crossing) -> bool:
-    by_force, by_frequency = crossing.error / crossing.force, crossing.frequency_error
-    return max(by_force, by_frequency / crossing.frequency) < _BELIEVED
+    by_frequency = crossing.frequency_error / crossing.frequency
+    return max(crossing.error / crossing.force, by_frequency) < _BELIEVED
 
 
 def _measured(

@@ -67,9 +67,9 @@ def find(
     from undula.app.answers import DONE, notice, reply
     from undula.app.compiling import compilation_announced
     from undula.studies.build import build_model
-    from undula.studies.spec import read_filament_input
+    from undula.studies.spec import read_model_input
 
-    wanted = read_filament_input(file, changes or ())
+    wanted = read_model_input(file, changes or ())
     with compilation_announced(notice):
         told = finding.find(build_model(wanted), kind, converge=converge, title=wanted.load_text)
     reply(told.answer, told.text, as_json=as_json)
@@ -102,13 +102,13 @@ def follow(
     from undula.app.following import Way, follow_along
     from undula.studies.build import build_model
     from undula.studies.ranges import parse_way
-    from undula.studies.spec import read_filament_input
+    from undula.studies.spec import read_model_input
 
-    wanted = read_filament_input(file, changes or ())
+    wanted = read_model_input(file, changes or ())
     way = Way(*parse_way("--along", along))
     _claim_figure(plot, overwrite=overwrite)
     stored = _runs_to_draw(kind, way.parameter, plot, runs or ())
-    title = wanted.load.tell({way.parameter.removeprefix("load.")})
+    title = wanted.tell({way.parameter})
     with compilation_announced(notice):
         told, branch = follow_along(build_model(wanted), kind, way, converge=converge, title=title)
     drawn = None if branch is None else plot
@@ -143,25 +143,26 @@ def threshold(
     as_json: Json = False,
 ) -> int:
     """Find the force at which a state gains or loses stability, also along a parameter."""
+    from undula.analysis.parameters import FORCE
     from undula.app.answers import DONE, notice, reply
     from undula.app.compiling import compilation_announced
     from undula.app.thresholding import tell_threshold, tell_thresholds
     from undula.studies.build import build_model
     from undula.studies.ranges import parse_axis
-    from undula.studies.spec import read_filament_input
+    from undula.studies.spec import read_model_input
 
-    wanted = read_filament_input(file, changes or ())
+    wanted = read_model_input(file, changes or ())
     model = build_model(wanted)
     if along is None:
         if plot is not None:
             raise InputError("--plot draws a curve; give --along as well")
-        title = wanted.load.tell({"force"})
+        title = wanted.tell({FORCE})
         with compilation_announced(notice):
             told = tell_threshold(model, name, converge=converge, title=title)
     else:
         axis = parse_axis("--along", along)
         _claim_figure(plot, overwrite=overwrite)
-        title = wanted.load.tell({"force", axis[0].removeprefix("load.")})
+        title = wanted.tell({FORCE, axis[0]})
         with compilation_announced(notice):
             told, found = tell_thresholds(model, name, axis, converge=converge, title=title)
         if plot is not None:

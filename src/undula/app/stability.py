@@ -195,4 +195,4 @@ def _title(question: Question) -> str:
     """Return the load in words, without what the answer sweeps over."""
     along = [question.along[0]] if question.along else []
     swept = ["load.force", *along] if question.forces or along else []
-    return question.wanted.load.tell({key.removeprefix("load.") for key in swept})
+    return question.wanted.tell(swept)

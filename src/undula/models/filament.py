@@ -9,7 +9,7 @@ import numpy as np
 
 from undula.errors import InputError, is_number
 from undula.models.linked_rod import LinkedRod
-from undula.models.loads import Load
+from undula.models.loads import DensityLoad
 from undula.models.rod import (
     ExtensiblePlanarRod,
     ExtensibleSpatialRod,
@@ -17,6 +17,7 @@ from undula.models.rod import (
     Rod,
     SpatialRod,
 )
+from undula.models.units import FILAMENT_UNITS, Units
 
 #: EA L^2 / B = 4 (L/a)^2 of a round filament with a/L = 1/100.
 TENSILE_STIFFNESS = 4e4
@@ -38,7 +39,7 @@ class Filament(LinkedRod):
     ----------
     segments : int
         Links that the filament is made of, at least 4. Errors fall as 1/segments^2.
-    load : Load
+    load : DensityLoad
         The axial follower force, see `undula.models.loads`.
     drag_ratio : float
         Normal over tangential drag coefficient, gamma, at least 1.
@@ -56,7 +57,7 @@ class Filament(LinkedRod):
     """
 
     segments: int
-    load: Load
+    load: DensityLoad
     drag_ratio: float = 2.0
     inextensibility: Literal["exact", "weak"] = "exact"
     tensile_stiffness: float = TENSILE_STIFFNESS
@@ -73,8 +74,11 @@ class Filament(LinkedRod):
                 f"segments = {self.segments!r} makes no filament;"
                 f" give a whole number of at least {FEWEST_SEGMENTS}"
             )
-        if not isinstance(self.load, Load):
-            raise InputError(f"load = {self.load!r} is no load; give one such as TipLoad(75.0)")
+        if not isinstance(self.load, DensityLoad):
+            raise InputError(
+                f"load = {self.load!r} is no load that a filament can bear; give one such as"
+                " TipLoad(75.0)"
+            )
         if not (is_number(self.drag_ratio) and self.drag_ratio >= 1.0):
             raise InputError(
                 f"drag_ratio = {self.drag_ratio!r} has to be a finite number, at least 1"
@@ -102,7 +106,17 @@ class Filament(LinkedRod):
         return rod(joint, weight, head, foot, h, 1.0 - 1.0 / self.drag_ratio, tensile)
 
     @property
-    def continuum(self) -> Load | None:
+    def links(self) -> int:
+        """Number of links."""
+        return self.segments
+
+    @property
+    def units(self) -> Units:
+        """Names of the units of its numbers."""
+        return FILAMENT_UNITS
+
+    @property
+    def continuum(self) -> DensityLoad | None:
         """The load of the inextensible filament that rigid links stand for; None for weak ones."""
         return self.load if self.inextensibility == "exact" else None
 

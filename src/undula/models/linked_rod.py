@@ -3,13 +3,13 @@
 import dataclasses
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError
-from undula.models.loads import Load
+from undula.models.loads import DensityLoad
 from undula.models.model import Energetics
 from undula.models.rod import PlanarRod, SpatialRod
 from undula.models.rod_flow import RodFlow
@@ -21,6 +21,12 @@ from undula.numerics.system import RATES
 class LinkedRod(ABC):
     """A model made of links: implements `undula.models.model.Model` on top of its tables."""
 
+    if TYPE_CHECKING:  # a property here would be taken for the default of a kind's own field
+
+        @property
+        def links(self) -> int:
+            """Number of links N."""
+
     @cached_property
     @abstractmethod
     def system(self) -> Any:
@@ -30,11 +36,6 @@ class LinkedRod(ABC):
     def dimension(self) -> int:
         """Coordinates of a node in a state: 3, or 2 if confined to a plane."""
         return int(self.system.dimension)
-
-    @property
-    def links(self) -> int:
-        """Number of links N."""
-        return int(self.system.joint.size)
 
     @property
     def size(self) -> int:
@@ -216,7 +217,7 @@ class LinkedRod(ABC):
         return reflected.ravel()
 
     @property
-    def continuum(self) -> Load | None:
+    def continuum(self) -> DensityLoad | None:
         """The load of the continuous filament that the links stand for; None without one."""
         return None
 

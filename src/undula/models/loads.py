@@ -40,14 +40,26 @@ class Load:
     Attributes
     ----------
     force : float
-        Total compressive force F [B/L^2], finite, at least 0.
+        Total compressive force F in the model's unit of force, finite, at least 0.
     """
 
     force: float
 
     def __post_init__(self) -> None:
         """Refuse values that are no load."""
-        _require(self, "force", 0.0, np.inf, "a finite number, at least 0")
+        require(self, "force", 0.0, np.inf, "a finite number, at least 0")
+
+    @abstractmethod
+    def shares(self, links: int) -> tuple[Links, Links]:
+        """Return the forces (head, foot) that each link puts on its outer and its inner node.
+
+        Both have shape (links,) and act along minus the link's tangent.
+        """
+
+
+@dataclass(frozen=True)
+class DensityLoad(Load):
+    """A force with a density f_a(s): one that a continuous filament can bear."""
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -67,10 +79,7 @@ class Load:
         """Return the first moment about the base carried by [0, s], the integral of s f_a."""
 
     def shares(self, links: int) -> tuple[Links, Links]:
-        """Return the forces (head, foot) that each link puts on its outer and its inner node.
-
-        Both have shape (links,) and act along minus the link's tangent.
-        """
+        """Return what each link carries, parted so that the first moment is exact."""
         s = np.linspace(0.0, 1.0, links + 1)
         force = np.diff(self.force_below(s))
         head = (np.diff(self.moment_below(s)) - s[:-1] * force) * links
@@ -78,7 +87,7 @@ class Load:
 
 
 @dataclass(frozen=True)
-class PointLoad(Load):
+class PointLoad(DensityLoad):
     """A force concentrated at arc length `position` in (0, 1] [L]."""
 
     position: float = 1.0
@@ -86,7 +95,7 @@ class PointLoad(Load):
     def __post_init__(self) -> None:
         """Refuse values that are no load."""
         super().__post_init__()
-        _require(self, "position", np.nextafter(0.0, 1.0), 1.0, "a number in (0, 1]")
+        require(self, "position", np.nextafter(0.0, 1.0), 1.0, "a number in (0, 1]")
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -124,7 +133,7 @@ class TipLoad(PointLoad):
 
 
 @dataclass(frozen=True)
-class LinearLoad(Load):
+class LinearLoad(DensityLoad):
     """A density F [1 + slope (2 s - 1)], with slope in [-1, 1]."""
 
     slope: float = 0.0
@@ -132,7 +141,7 @@ class LinearLoad(Load):
     def __post_init__(self) -> None:
         """Refuse values that are no load."""
         super().__post_init__()
-        _require(self, "slope", -1.0, 1.0, "a number in [-1, 1]")
+        require(self, "slope", -1.0, 1.0, "a number in [-1, 1]")
 
     def force_below(self, s: Points) -> Points:
         """Return F [s + slope (s^2 - s)]."""
@@ -144,7 +153,7 @@ class LinearLoad(Load):
 
 
 @dataclass(frozen=True)
-class PowerLoad(Load):
+class PowerLoad(DensityLoad):
     """A density F (p + 1) s^p, with exponent p at least 0."""
 
     exponent: float = 1.0
@@ -152,7 +161,7 @@ class PowerLoad(Load):
     def __post_init__(self) -> None:
         """Refuse values that are no load."""
         super().__post_init__()
-        _require(self, "exponent", 0.0, np.inf, "a finite number, at least 0")
+        require(self, "exponent", 0.0, np.inf, "a finite number, at least 0")
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -173,7 +182,8 @@ class PowerLoad(Load):
         return self.force * (p + 1.0) / (p + 2.0) * s ** (p + 2.0)
 
 
-def _require(load: Load, name: str, lowest: float, highest: float, wanted: str) -> None:
+def require(load: Load, name: str, lowest: float, highest: float, wanted: str) -> None:
+    """Refuse a load whose number is out of its range."""
     value = getattr(load, name)
     if not (is_number(value) and lowest <= value <= highest):
         raise InputError(f"{type(load).__name__}: {name} = {value!r} has to be {wanted}")

@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from typing import Any, Protocol, Self
 
 from undula.arrays import Array, Nodes, State
-from undula.models.loads import Load
+from undula.models.loads import DensityLoad, Load
+from undula.models.units import Units
 
 
 @dataclass(frozen=True)
 class Energetics:
-    """Energies [B/L] and powers [B/(L T)] of a row of states, each of shape (m,)."""
+    """Energies and powers of a row of states, each of shape (m,), in the model's units."""
 
     bending_energy: Array
     stretching_energy: Array
@@ -41,6 +42,10 @@ class Model(Protocol):
     @property
     def links(self) -> int:
         """Number of links that the model is made of."""
+
+    @property
+    def units(self) -> Units:
+        """Names of the units of its numbers."""
 
     @property
     def equations(self) -> Any:
@@ -86,7 +91,7 @@ class Model(Protocol):
         """
 
     @property
-    def continuum(self) -> Load | None:
+    def continuum(self) -> DensityLoad | None:
         """The load of the continuous filament that the links stand for; None without one."""
 
     def with_links(self, links: int) -> Self | None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from undula.arrays import Array, Points
 from undula.errors import InputError, is_number
-from undula.models.loads import Load
+from undula.models.loads import DensityLoad
 from undula.models.spread import Density, Spread, followed, largest_of, spread_of
 
 #: How far from 0 and 1 the ends of a table may be, by the round-off of whoever made it.
@@ -27,7 +27,7 @@ _END_ROUND_OFF = 1e-12
 _KINK_ROUND_OFF = 1e-13
 
 
-class _GivenLoad(Load):
+class _GivenLoad(DensityLoad):
     """A load whose density is a piecewise polynomial."""
 
     @property
@@ -168,7 +168,7 @@ class ProfileLoad(_GivenLoad):
         return self.density.spread
 
 
-def _numbers(load: Load, name: str) -> tuple[float, ...]:
+def _numbers(load: DensityLoad, name: str) -> tuple[float, ...]:
     """Return a sequence of the user's as floats."""
     given, place = getattr(load, name), f"{type(load).__name__}: {name}"
     if not isinstance(given, Iterable):

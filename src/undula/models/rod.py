@@ -48,6 +48,22 @@ class PlanarRod(Tables):
     half_bandwidth: ClassVar = 6
 
 
+class FoldingSpatialRod(Tables):
+    """Rigid links in space that bend so sharply at joints that Newton's method wants all terms."""
+
+    dimension: ClassVar = 3
+    extensible: ClassVar = False
+    half_bandwidth: ClassVar = 11
+
+
+class FoldingPlanarRod(Tables):
+    """Such links in a plane that holds the axis."""
+
+    dimension: ClassVar = 2
+    extensible: ClassVar = False
+    half_bandwidth: ClassVar = 8
+
+
 class ExtensibleSpatialRod(Tables):
     """Extensible links in space."""
 
@@ -64,5 +80,19 @@ class ExtensiblePlanarRod(Tables):
     half_bandwidth: ClassVar = 8
 
 
-Rod = SpatialRod | PlanarRod | ExtensibleSpatialRod | ExtensiblePlanarRod
-RODS = (SpatialRod, PlanarRod, ExtensibleSpatialRod, ExtensiblePlanarRod)
+GENTLE_RODS = (SpatialRod, PlanarRod)
+RODS = (
+    *GENTLE_RODS,
+    FoldingSpatialRod,
+    FoldingPlanarRod,
+    ExtensibleSpatialRod,
+    ExtensiblePlanarRod,
+)
+Rod = (
+    SpatialRod
+    | PlanarRod
+    | FoldingSpatialRod
+    | FoldingPlanarRod
+    | ExtensibleSpatialRod
+    | ExtensiblePlanarRod
+)

@@ -3,8 +3,9 @@
 The exact derivative has half-bandwidth 3 m - 1 for m numbers a node. Newton's method on rigid links
 does with less: without the slope of g, elastic forces depend on links through multiples of the
 identity, so that the half-bandwidth is 2 m and the stiff part does not turn with the filament. The
-slope's terms are of relative size psi^2; the iteration makes up for them. Extensible links need the
-exact derivative, as their bending and stretching stiffnesses are of one size.
+slope's terms are of relative size psi^2; the iteration makes up for them as long as joints bend
+gently. Links that fold need the exact derivative, and so do extensible ones, whose bending and
+stretching stiffnesses are of one size.
 
 Coefficients of links, J[k] = d (row i) / de_k for k = i-1 .. i+2, come first; a node p then gets
 J[p] - J[p+1].
@@ -16,13 +17,13 @@ import numpy as np
 
 from undula.compiled import entry
 from undula.models.joint import stiffening
-from undula.models.rod import RODS
+from undula.models.rod import GENTLE_RODS, RODS
 from undula.models.rod_derivative import derivative_kernel, drag_block_kernel
 from undula.models.rod_equations import cosine_kernel, tangents_kernel
 from undula.numerics.system import generic, implements, matrix
 
 
-def _register_rigid(rod: Any) -> None:
+def _register_gentle(rod: Any) -> None:
     d, m, half = rod.dimension, rod.dimension + 1, rod.half_bandwidth
     tangents, cosine, drag_block = tangents_kernel(d, False), cosine_kernel(d), drag_block_kernel(d)
 
@@ -86,10 +87,10 @@ def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any
 for _rod in RODS:
     _derivative: Any = derivative_kernel(_rod.dimension, _rod.extensible)
     implements(derivative, _rod)(_derivative.py_func)
-    if _rod.extensible:
-        implements(matrix, _rod)(_derivative.py_func)
+    if _rod in GENTLE_RODS:
+        _register_gentle(_rod)
     else:
-        _register_rigid(_rod)
+        implements(matrix, _rod)(_derivative.py_func)
 
 
 @entry

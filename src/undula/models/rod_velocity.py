@@ -7,13 +7,12 @@ Rigid links: the multipliers follow from t_i . (v_i - v_{i-1}) = 0, a tridiagona
 Extensible links: each follows from the stretch of its link.
 """
 
-import math
 from typing import Any
 
 import numpy as np
 
 from undula.compiled import entry, kernel
-from undula.models.joint import stiffening
+from undula.models.joint import joint_energy, stiffening
 from undula.models.rod import RODS
 from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tangents_kernel
 from undula.numerics.system import generic, implements, rates, residual
@@ -133,8 +132,7 @@ def _register(rod: Any) -> None:
             for a in range(d):
                 previous = t[i - 1, a] if i > 0 else (1.0 if a == d - 1 else 0.0)
                 chord += (t[i, a] - previous) ** 2
-            angle = 2.0 * math.asin(min(1.0, 0.5 * math.sqrt(chord)))
-            bending += 0.5 * system.joint[i] * angle * angle
+            bending += system.joint[i] * joint_energy(chord)
             if extensible:
                 strain = length[i] / system.link - 1.0
                 stretching += 0.5 * system.tensile * system.link * strain * strain

@@ -31,6 +31,8 @@ _TOGETHER = 0.1
 
 def crossings(pencil: LinearPencil) -> list[tuple[float, float]]:
     """Return (p, omega), p > 0 rising, wherever a pair +- i omega lies on the imaginary axis."""
+    if pencil.mass.shape[0] < 2:
+        return []
     base = _wedge(pencil.base, pencil.mass)
     change = _wedge(pencil.change, pencil.mass)
     found = []
@@ -46,6 +48,8 @@ def crossings(pencil: LinearPencil) -> list[tuple[float, float]]:
 
 def coalescences(pencil: LinearPencil) -> list[tuple[float, float]]:
     """Return (p, sigma), p > 0 rising, wherever two real eigenvalues meet at sigma."""
+    if pencil.mass.shape[0] < 2:
+        return []
     rates = _rates(pencil.mass, pencil.base)
     change = _rates(pencil.mass, pencil.change)
     constant = _difference_squared(rates, rates)

@@ -21,7 +21,7 @@ def to_lapack(band: Array) -> Array:
     n, width = band.shape
     b = width // 2
     stored = np.zeros((3 * b + 1, n), order="F")
-    for offset in range(-b, b + 1):
+    for offset in range(max(-b, 1 - n), min(b, n - 1) + 1):
         rows = slice(max(0, -offset), min(n, n - offset))
         stored[2 * b - offset, rows.start + offset : rows.stop + offset] = band[rows, b + offset]
     return stored

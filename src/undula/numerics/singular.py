@@ -81,11 +81,14 @@ def refine_crossing(pencil: Pencil, p: float, omega: float) -> CriticalPair | No
         p, omega = p + float(step[0]), omega + float(step[1])
         if not (p > 0.0 and omega > 0.0 and np.isfinite(p + omega)):
             return None
-        if abs(step[0]) < _SMALL_STEP * p and abs(step[1]) < _SMALL_STEP * omega:
-            rate_by_p = -by_p / bordered.change(mass)
-            noise = bordered.noise(np.abs(stiffness) + omega * np.abs(mass))
-            spread = noise / abs(bordered.change(mass)) / abs(rate_by_p.real)
-            return CriticalPair(p, omega, float(rate_by_p.real), bordered.c, float(spread))
+        by_sigma = bordered.change(mass)
+        rate_by_p = -by_p / by_sigma
+        noise = bordered.noise(np.abs(stiffness) + omega * np.abs(mass)) / abs(by_sigma)
+        spread = float(noise / abs(rate_by_p.real))
+        # Of a stiff pencil round-off may leave less than a small step asks for.
+        small = abs(step[0]) < max(_SMALL_STEP * p, spread)
+        if small and abs(step[1]) < max(_SMALL_STEP * omega, noise):
+            return CriticalPair(p, omega, float(rate_by_p.real), bordered.c, spread)
     return None
 
 

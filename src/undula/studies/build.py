@@ -5,22 +5,30 @@ from pathlib import Path
 
 from undula.analysis.schedule import Schedule
 from undula.arrays import State
+from undula.models.beads import BeadLoad
+from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.loads import DensityLoad, LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.model import Model
 from undula.models.profiles import TableLoad
 from undula.models.starts import from_state, helix, kicked, mode, planar, straight
-from undula.studies.spec import FilamentInput, RunInput
-from undula.studies.tables import LoadTable, StartTable
+from undula.studies.model_tables import LoadTable
+from undula.studies.spec import ModelInput, RunInput
+from undula.studies.tables import StartTable
 
-_LOADS: Mapping[str, Callable[[LoadTable], Load]] = {
+_DENSITIES: Mapping[str, Callable[[LoadTable], DensityLoad]] = {
     "tip": lambda table: TipLoad(table.force),
     "point": lambda table: PointLoad(table.force, table.position),
     "linear": lambda table: LinearLoad(table.force, table.slope),
     "power": lambda table: PowerLoad(table.force, table.exponent),
     "table": lambda table: TableLoad(table.force, table.s or (), table.density or ()),
 }
+_LOADS: Mapping[str, Callable[[LoadTable], Load]] = {
+    **_DENSITIES,
+    "beads": lambda table: BeadLoad(table.force, table.beads),
+}
 
-_STARTS: Mapping[str, Callable[[Filament, StartTable], State]] = {
+_STARTS: Mapping[str, Callable[[Model, StartTable], State]] = {
     "straight": lambda model, _: straight(model),
     "kicked": lambda model, table: kicked(model, table.amplitude, seed=table.seed),
     "planar": lambda model, table: planar(model, table.amplitude, angle=table.angle),
@@ -32,7 +40,7 @@ _STARTS: Mapping[str, Callable[[Filament, StartTable], State]] = {
 }
 
 
-def build_model(wanted: FilamentInput) -> Filament:
+def build_model(wanted: ModelInput) -> Model:
     """Return the model that an input describes.
 
     Parameters
@@ -40,10 +48,19 @@ def build_model(wanted: FilamentInput) -> Filament:
     wanted
         A checked input; its tables ``[model]`` and ``[load]`` are read.
     """
-    table = wanted.model
+    table, load = wanted.model, wanted.load
+    if table.kind == "chain":
+        return Chain(
+            links=table.links,
+            load=_LOADS[load.profile](load),
+            drag_ratio=table.drag_ratio,
+            base_spring=table.base_spring,
+            bead_drag=table.bead_drag,
+            confined=table.confined,
+        )
     return Filament(
         segments=table.segments,
-        load=_LOADS[wanted.load.profile](wanted.load),
+        load=_DENSITIES[load.profile](load),
         drag_ratio=table.drag_ratio,
         inextensibility=table.inextensibility,
         tensile_stiffness=table.tensile_stiffness,
@@ -51,7 +68,7 @@ def build_model(wanted: FilamentInput) -> Filament:
     )
 
 
-def build_start(wanted: RunInput, model: Filament) -> State:
+def build_start(wanted: RunInput, model: Model) -> State:
     """Return the state in which the run of an input begins.
 
     Parameters
@@ -86,7 +103,7 @@ def build_schedule(wanted: RunInput) -> Schedule:
     return Schedule(**wanted.time.model_dump())
 
 
-def _stored_state(model: Filament, path: Path, amplitude: float) -> State:
+def _stored_state(model: Model, path: Path, amplitude: float) -> State:
     # Files are slow to learn to read, and most starts need none.
     from undula.studies.store import load_result
 

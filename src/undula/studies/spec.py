@@ -1,22 +1,25 @@
 """The input of a command: a frozen, checked record with a default for every key.
 
-One file describes a filament and may hold tables for several commands; each reads its own.
+One file describes a model and may hold tables for several commands; each reads its own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
 from pydantic import Field, ValidationError, model_validator
 
 from undula.errors import InputError
+from undula.models.beads import BeadLoad
+from undula.models.units import FILAMENT_UNITS, chain_units
 from undula.studies.complaints import explain
+from undula.studies.model_tables import LoadTable, ModelTable
 from undula.studies.overrides import apply_overrides, read_toml
 from undula.studies.strict_table import Table, conflict
-from undula.studies.tables import LoadTable, ModelTable, StabilityTable, StartTable, TimeTable
+from undula.studies.tables import StabilityTable, StartTable, TimeTable
 
 
-class FilamentInput(Table):
+class ModelInput(Table):
     """What every command reads.
 
     Attributes
@@ -29,10 +32,54 @@ class FilamentInput(Table):
     model: ModelTable = Field(default=ModelTable(), description="a table")
     load: LoadTable = Field(default=LoadTable(), description="a table")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _chains_move_like_filaments(cls, given: Any) -> Any:
+        """Give a chain the force and the times that correspond to a filament's defaults."""
+        table = given.get("model") if isinstance(given, Mapping) else None
+        if not (isinstance(table, Mapping) and table.get("kind") == "chain"):
+            return given
+        links = table.get("links", ModelTable.model_fields["links"].default)
+        if not isinstance(links, int) or links < 1:
+            return given  # which is refused where its range is known
+        units = chain_units(links)
+        corresponding = {
+            "load": {"force": LoadTable().force / units.forces[FILAMENT_UNITS.force]},
+            "time": {key: value * units.duration for key, value in _times(given).items()},
+        }
+        return dict(given) | {
+            name: defaults | dict(given.get(name, {}))
+            for name, defaults in corresponding.items()
+            if name in cls.model_fields and isinstance(given.get(name, {}), Mapping)
+        }
+
+    @model_validator(mode="after")
+    def _force_finds_its_beads(self) -> Self:
+        if self.load.profile != "beads":
+            return self
+        if self.model.kind != "chain":
+            raise conflict(
+                "load.profile = 'beads' acts on beads, and a filament has none; use model.kind ="
+                " 'chain' or another profile"
+            )
+        try:
+            BeadLoad(self.load.force, self.load.beads).shares(self.model.links)
+        except InputError as error:
+            raise conflict(f"load.{str(error).removeprefix('BeadLoad: ')}") from None
+        return self
+
     @property
     def load_text(self) -> str:
-        """The load in a few words, such as ``tip force 75``."""
-        return self.load.text
+        """Model and load in a few words, such as ``tip force 75``."""
+        return self.tell()
+
+    def tell(self, swept: Collection[str] = ()) -> str:
+        """Return model and load in a few words, without the keys that a curve sweeps over."""
+        keys = {key.removeprefix("load.") for key in swept}
+        if self.model.kind == "filament":
+            return self.load.tell(keys)
+        unit = chain_units(self.model.links).force
+        return f"chain of {self.model.links} links, {self.load.tell(keys, unit)}"
 
     def dump(self) -> dict[str, Any]:
         """Return the complete resolved input as plain JSON types.
@@ -46,7 +93,7 @@ class FilamentInput(Table):
         return {name: getattr(self, name).dump() for name in type(self).model_fields}
 
 
-class RunInput(FilamentInput):
+class RunInput(ModelInput):
     """The complete, checked input of one run: the filament, its start, and how long."""
 
     start: StartTable = Field(default=StartTable(), description="a table")
@@ -67,7 +114,7 @@ class RunInput(FilamentInput):
         return self
 
 
-class StabilityInput(FilamentInput):
+class StabilityInput(ModelInput):
     """The complete, checked input of a question about the straight state."""
 
     stability: StabilityTable = Field(default=StabilityTable(), description="a table")
@@ -77,7 +124,7 @@ class _WholeFile(RunInput, StabilityInput):
     """All that an input file may hold."""
 
 
-Input = TypeVar("Input", bound=FilamentInput)
+Input = TypeVar("Input", bound=ModelInput)
 
 
 def parse_input(tables: Mapping[str, Any]) -> RunInput:
@@ -127,14 +174,22 @@ def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunIn
     return _read(RunInput, path, overrides)
 
 
-def read_filament_input(path: Path | None = None, overrides: Sequence[str] = ()) -> FilamentInput:
+def read_model_input(path: Path | None = None, overrides: Sequence[str] = ()) -> ModelInput:
     """Read what every command reads, as `read_input` does for a run."""
-    return _read(FilamentInput, path, overrides)
+    return _read(ModelInput, path, overrides)
 
 
 def read_stability_input(path: Path | None = None, overrides: Sequence[str] = ()) -> StabilityInput:
     """Read the input of a question about the straight state, as `read_input` does for a run."""
     return _read(StabilityInput, path, overrides)
+
+
+def _times(given: Mapping[str, Any]) -> dict[str, float]:
+    """Return the default times of a filament that the choices in an input leave a meaning."""
+    fields, chosen = TimeTable.model_fields, given.get("time")
+    if isinstance(chosen, Mapping) and chosen.get("until") == "settled":
+        return {"limit": fields["limit"].default}
+    return {"until": fields["until"].default}
 
 
 def _read(record: type[Input], path: Path | None, overrides: Sequence[str]) -> Input:

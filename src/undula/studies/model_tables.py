@@ -1,0 +1,181 @@
+"""The tables of an input file that describe the model: what moves, and what pushes it.
+
+Numbers are dimensionless: lengths in L, forces in B/L^2 for a filament and in K/L for a chain.
+"""
+
+from collections.abc import Collection, Mapping
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import Field, PlainSerializer, model_validator
+
+from undula.errors import InputError
+from undula.models.chain import MOST_LINKS
+from undula.models.profiles import TableLoad
+from undula.studies.strict_table import OnlyWith, Table, conflict
+
+Inextensibility = Literal["exact", "weak"]
+Profile = Literal["tip", "point", "linear", "power", "table", "beads"]
+#: A list, as TOML and JSON have it, held so that it cannot be changed; its numbers stay strict.
+Numbers = Annotated[tuple[float, ...], Field(strict=False), PlainSerializer(list)]
+PositiveNumbers = Annotated[
+    tuple[Annotated[float, Field(gt=0.0)], ...], Field(strict=False), PlainSerializer(list)
+]
+BeadNumbers = Annotated[
+    tuple[Annotated[int, Field(ge=1)], ...],
+    Field(strict=False, min_length=1),
+    PlainSerializer(list),
+]
+
+
+class ModelTable(Table):
+    """The table ``[model]``: what moves.
+
+    Attributes
+    ----------
+    kind
+        The family of models: ``"filament"`` or ``"chain"``.
+    segments
+        Number of rigid links that a filament is made of, at least 4.
+    links
+        Number of links of a chain, from 1 to 1000.
+    drag_ratio
+        Normal over tangential drag coefficient, at least 1; by default 2 for a filament and 1 for a
+        chain.
+    inextensibility
+        ``"exact"`` by tensions, or ``"weak"`` by a large tensile stiffness; for a filament.
+    tensile_stiffness
+        EA L^2/B, above 0; read only for weak inextensibility. The default is 4 (L/a)^2 for a
+        rod of circular section with a/L = 1/100.
+    base_spring
+        Stiffness of the spring that clamps a chain, in K, above 0.
+    bead_drag
+        Drag of every bead of a chain, or a list with that of each one from the base on, in zeta.
+    confined
+        Whether the motion is kept in one plane.
+    """
+
+    kind: Literal["filament", "chain"] = Field(
+        default="filament", description="'filament' or 'chain'"
+    )
+    segments: int = Field(default=40, ge=4, description="a whole number of at least 4")
+    links: int = Field(
+        default=6, ge=1, le=MOST_LINKS, description=f"a whole number from 1 to {MOST_LINKS}"
+    )
+    drag_ratio: float = Field(default=2.0, ge=1.0, description="a number of at least 1")
+    inextensibility: Inextensibility = Field(default="exact", description="'exact' or 'weak'")
+    tensile_stiffness: float = Field(default=4e4, gt=0.0, description="a number above 0")
+    base_spring: float = Field(default=1.0, gt=0.0, description="a number above 0")
+    bead_drag: Annotated[float, Field(gt=0.0)] | PositiveNumbers = Field(
+        default=1.0, description="a number above 0, or a list with one for each bead"
+    )
+    confined: bool = Field(default=False, description="true or false")
+
+    only_with: ClassVar[Mapping[str, OnlyWith]] = {
+        "segments": OnlyWith("kind", ("filament",)),
+        "links": OnlyWith("kind", ("chain",)),
+        "inextensibility": OnlyWith("kind", ("filament",)),
+        "tensile_stiffness": OnlyWith("inextensibility", ("weak",)),
+        "base_spring": OnlyWith("kind", ("chain",)),
+        "bead_drag": OnlyWith("kind", ("chain",)),
+    }
+
+    @model_validator(mode="before")
+    @classmethod
+    def _beads_are_round(cls, given: Any) -> Any:
+        if isinstance(given, Mapping) and given.get("kind") == "chain":
+            return {"drag_ratio": 1.0, **given}
+        return given
+
+    @model_validator(mode="after")
+    def _every_bead_has_its_drag(self) -> Self:
+        if isinstance(self.bead_drag, tuple) and len(self.bead_drag) != self.links:
+            raise conflict(
+                f"model.bead_drag lists {len(self.bead_drag)} beads and model.links = {self.links}"
+                " has as many as links; give one number for each, or one for all"
+            )
+        return self
+
+
+class LoadTable(Table):
+    """The table ``[load]``: the follower force and where it acts.
+
+    Attributes
+    ----------
+    profile
+        How the force is spread along the filament.
+    force
+        Total force F, at least 0. By default 75 B/L^2 for a filament; for a chain what
+        corresponds to it, 75/N K/L.
+    position
+        Arclength s_a of a point load in L, above 0 and at most 1.
+    slope
+        Slope alpha of a linear load, from -1 to 1: density F [1 + alpha (2 s - 1)].
+    exponent
+        Exponent p of a power load, at least 0: density F (p + 1) s^p.
+    s, density
+        The points of a table load: arclengths in L, increasing from 0 to 1, and the density at
+        each of them in any unit, linear in between and scaled to the total; for ``table``, which
+        cannot do without.
+    beads
+        The beads of a chain that share a force equally, counted from 1 at the base, or ``"all"``;
+        for ``beads``.
+    """
+
+    profile: Profile = Field(
+        default="tip", description="'tip', 'point', 'linear', 'power', 'table' or 'beads'"
+    )
+    force: float = Field(default=75.0, ge=0.0, description="a number of at least 0")
+    position: float = Field(
+        default=1.0, gt=0.0, le=1.0, description="a number above 0 and at most 1"
+    )
+    slope: float = Field(default=0.0, ge=-1.0, le=1.0, description="a number from -1 to 1")
+    exponent: float = Field(default=1.0, ge=0.0, description="a number of at least 0")
+    s: Numbers | None = Field(default=None, description="a list of numbers, increasing from 0 to 1")
+    density: Numbers | None = Field(default=None, description="a list of numbers, one for each s")
+    beads: Literal["all"] | BeadNumbers = Field(
+        default="all", description="'all' or a list of different whole numbers, from 1 on"
+    )
+
+    only_with: ClassVar[Mapping[str, OnlyWith]] = {
+        "position": OnlyWith("profile", ("point",)),
+        "slope": OnlyWith("profile", ("linear",)),
+        "exponent": OnlyWith("profile", ("power",)),
+        "s": OnlyWith("profile", ("table",)),
+        "density": OnlyWith("profile", ("table",)),
+        "beads": OnlyWith("profile", ("beads",)),
+    }
+
+    @model_validator(mode="after")
+    def _table_is_a_load(self) -> Self:
+        if self.profile != "table":
+            return self
+        if self.s is None or self.density is None:
+            missing = "load.s" if self.s is None else "load.density"
+            raise conflict(
+                f"load.profile = 'table' needs {missing}; give load.s and load.density as lists of"
+                " numbers of one length"
+            )
+        try:
+            TableLoad(self.force, self.s, self.density)
+        except InputError as error:
+            # The load names its values as the keys are named.
+            raise conflict(f"load.{str(error).removeprefix('TableLoad: ')}") from None
+        return self
+
+    def tell(self, swept: Collection[str] = (), unit: str = "") -> str:
+        """Return the load in a few words, such as ``point force 75 at s = 0.8``.
+
+        The keys that a curve sweeps over are left out; a unit of force other than a filament's can
+        be named.
+        """
+        force = f"{self.force:.12g} {unit}".rstrip()
+        head = f"{self.profile} load" if "force" in swept else f"{self.profile} force {force}"
+        details = {
+            "position": f" at s = {self.position:.12g}",
+            "slope": f", slope {self.slope:.12g}",
+            "exponent": f", exponent {self.exponent:.12g}",
+            "s": f" ({len(self.s or ())} points)",
+            "beads": " on all" if self.beads == "all" else f" on {', '.join(map(str, self.beads))}",
+        }
+        told = [text for key, text in details.items() if key in self.dump() and key not in swept]
+        return head + "".join(told)
