@@ -19,9 +19,8 @@ from undula.numerics.bialternate import coalescences, crossings
 from undula.numerics.pencil import Pencil, eigenvalues
 from undula.numerics.singular import CriticalPair, refine_coalescence, refine_crossing
 
-# Sizes of the small pencils, tried in turn.
-_SIZES = (10, 16, 24)
-_SIZE_TO_MEET = 8
+# Sizes of the small pencils, tried in turn; a smaller one where eigenvalues meet.
+_SIZES, _SIZE_TO_MEET = (10, 16, 24), 8
 # A better resolution is tried unless thresholds are settled to this relative error.
 _SETTLED = 1e-12
 # A rate this small beside the frequency, or the slowest decay without a force, counts as 0; a
