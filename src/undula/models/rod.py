@@ -38,6 +38,7 @@ class SpatialRod(Tables):
     dimension: ClassVar = 3
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 8
+    derivative_half_bandwidth: ClassVar = 11
 
 
 class PlanarRod(Tables):
@@ -46,6 +47,7 @@ class PlanarRod(Tables):
     dimension: ClassVar = 2
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 6
+    derivative_half_bandwidth: ClassVar = 8
 
 
 class FoldingSpatialRod(Tables):

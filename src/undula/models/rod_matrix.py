@@ -20,7 +20,7 @@ from undula.models.joint import stiffening
 from undula.models.rod import GENTLE_RODS, RODS
 from undula.models.rod_derivative import derivative_kernel, drag_block_kernel
 from undula.models.rod_equations import cosine_kernel, tangents_kernel
-from undula.numerics.system import generic, implements, matrix
+from undula.numerics.system import derivative, implements, matrix
 
 
 def _register_gentle(rod: Any) -> None:
@@ -77,11 +77,6 @@ def _register_gentle(rod: Any) -> None:
                 band[m * i + d, half + a - d] = t[i, a] / h
                 if i > 0:
                     band[m * i + d, half + a - d - m] = -t[i, a] / h
-
-
-@generic
-def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any:
-    """Write the exact derivative of the residual to band (n, 6 m - 1)."""
 
 
 for _rod in RODS:

@@ -70,6 +70,15 @@ def matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any:
 
 
 @generic
+def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any:
+    """Write the exact derivative that `matrix` may be a part of, by default `matrix` itself.
+
+    It has the half-bandwidth `derivative_half_bandwidth` where a system has that attribute.
+    """
+    matrix(system, y, w, c, turn, band)
+
+
+@generic
 def weigh(system: Any, y: Any, u: Any, out: Any) -> Any:
     """Write R(x) u to the differential rows of out (n,), 0 to the constraint rows."""
     out[:] = u
@@ -112,6 +121,20 @@ def rotate(system: Any, y: Any, angle: Any, out: Any) -> Any:
     out[:] = y
 
 
+def derivative_half_bandwidth(system: type) -> int:
+    """Return the half-bandwidth of what `derivative` writes for systems of a type."""
+    own: int = system.half_bandwidth  # type: ignore[attr-defined]
+    return int(getattr(system, "derivative_half_bandwidth", own))
+
+
+def factor_derivative(system: Any, band: Any) -> Any:
+    """Factor what `derivative` wrote in place; False where a pivot vanishes."""
+
+
+def solve_derivative(system: Any, band: Any, x: Any) -> Any:
+    """Overwrite x (n,) by the solution of the factored derivative."""
+
+
 def factor(system: Any, band: Any) -> Any:
     """Factor the system's matrix in place; False where a pivot vanishes."""
 
@@ -129,4 +152,16 @@ def _factor(system: Any, band: Any) -> Any:
 @overload(solve, strict=False, jit_options=RESOLVED)
 def _solve(system: Any, band: Any, x: Any) -> Any:
     kernel = banded.solve_kernel(system.instance_class.half_bandwidth)
+    return lambda system, band, x: kernel(band, x)  # noqa: ARG005
+
+
+@overload(factor_derivative, strict=False, jit_options=RESOLVED)
+def _factor_derivative(system: Any, band: Any) -> Any:
+    kernel = banded.factor_kernel(derivative_half_bandwidth(system.instance_class))
+    return lambda system, band: kernel(band)  # noqa: ARG005
+
+
+@overload(solve_derivative, strict=False, jit_options=RESOLVED)
+def _solve_derivative(system: Any, band: Any, x: Any) -> Any:
+    kernel = banded.solve_kernel(derivative_half_bandwidth(system.instance_class))
     return lambda system, band, x: kernel(band, x)  # noqa: ARG005
