@@ -115,11 +115,12 @@ def test_a_run_without_a_file_answers_with_one_object_and_nothing_else(ask: Ask)
     promised = {
         *("status", "verdict", "reason", "frequency", "bending_energy", "tip_radius", "tip_height"),
         *("power_balance_error", "length_error", "steps", "rejected", "seconds", "output"),
-        *("load", "seed", "figure", "movie"),
+        *("load", "seed", "figure", "movie", "units", "force"),
     }
     assert promised <= found.keys()
     assert found["status"] == "done"
     assert found["load"] == "tip force 75"
+    assert (found["force"], found["units"]["force"]) == (75.0, "B/L^2")
     assert found["seed"] == 1
     assert found["bending_energy"].keys() == {"min", "max", "mean"}
     assert found["output"] == "results/run/run.nc"

@@ -83,6 +83,7 @@ def test_a_single_case_is_answered_with_what_python_computes(ask: Ask) -> None:
     assert found == {
         "status": "done",
         "load": "tip force 60",
+        "units": filament.units.names(),
         "method": "spectral",
         "paper_time": False,
         "oscillatory_force": onset.oscillatory_force,

@@ -16,7 +16,8 @@ EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 FEW = ["--set", "model.segments=8"]
 CONFINED = ["--set", "model.confined=true"]
 STATE = {
-    *("status", "kind", "force", "links", "frequency", "error", "stable", "leading_rate"),
+    *("status", "kind", "units", "force", "links", "frequency", "error", "stable"),
+    "leading_rate",
     *("bending_energy", "tip_radius", "tip_height", "residual", "power_balance_error"),
 }
 RANGE = {"min", "max", "mean"}
@@ -163,7 +164,7 @@ def test_below_the_onset_there_is_no_state_and_the_reason_names_the_force(
 ) -> None:
     words = ["find", kind, *FEW, "--set", "load.force=30"]
     found = answer(ask(*words, "--json"))
-    assert found.keys() == {"status", "reason", "residual"}
+    assert found.keys() == {"status", "units", "reason", "residual"}
     assert found["status"] == "not found"
     assert f"begins at force {un.critical_force(EIGHT, method='discrete').force:.6g}" in str(
         found["reason"]
@@ -193,7 +194,7 @@ def test_people_read_aligned_lines_with_units(kind: str, ask: Ask) -> None:
 def test_a_branch_is_answered_with_its_points_and_bifurcations(ask: Ask) -> None:
     words = ["follow", "spinning", *FEW, "--along", "load.force=120:160", "--json"]
     found = answer(ask(*words))
-    assert found.keys() == {"status", "parameter", "points", "bifurcations", "figure"}
+    assert found.keys() == {"status", "units", "parameter", "points", "bifurcations", "figure"}
     assert (found["status"], found["parameter"], found["figure"]) == ("done", "load.force", None)
     points = found["points"]
     assert (points[0]["load.force"], points[-1]["load.force"]) == (120.0, 160.0)
@@ -300,6 +301,7 @@ def test_a_threshold_is_answered_with_what_python_computes(name: str, ask: Ask) 
     single = un.threshold(EIGHT, name)
     assert found == {
         "status": "done",
+        "units": EIGHT.units.names(),
         "threshold": name,
         "figure": None,
         **{key: getattr(single, key) for key in THRESHOLD},
@@ -311,7 +313,7 @@ def test_a_threshold_is_answered_with_what_python_computes(name: str, ask: Ask) 
 def test_a_threshold_along_a_parameter_is_a_list(ask: Ask) -> None:
     words = ["threshold", "spinning-lost", *FEW, "--along", "model.drag_ratio=1.8,2", "--json"]
     found = answer(ask(*words))
-    assert found.keys() == {"status", "threshold", "parameter", "thresholds", "figure"}
+    assert found.keys() == {"status", "units", "threshold", "parameter", "thresholds", "figure"}
     assert [one["model.drag_ratio"] for one in found["thresholds"]] == [1.8, 2.0]
     for one in found["thresholds"]:
         assert one.keys() == THRESHOLD | {"model.drag_ratio"}

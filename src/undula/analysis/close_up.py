@@ -15,6 +15,8 @@ from undula.analysis.simulation import Simulation
 ENOUGH_A_PERIOD = 24.0
 #: Periods in a close-up, if the marks reach back so far: frequencies gain with their square.
 PERIODS = 40.0
+#: Of a motion that has not settled, so many: an irregular one takes more to be told as such.
+PERIODS_UNSETTLED = 160.0
 #: Most samples of a close-up.
 MOST_SAMPLES = 8000
 
@@ -25,7 +27,8 @@ def close_up(simulation: Simulation) -> Motion | None:
     if fast is None or simulation.interval * ENOUGH_A_PERIOD <= fast:
         return None
     end = simulation.time
-    start = max(end - PERIODS * slow, simulation.earliest_mark)
+    periods = PERIODS if simulation.settled else PERIODS_UNSETTLED
+    start = max(end - periods * slow, simulation.earliest_mark)
     interval = max(0.5 * fast / ENOUGH_A_PERIOD, (end - start) / MOST_SAMPLES)
     count = int((end - start) / interval)
     if count < 2:

@@ -9,12 +9,17 @@ from dataclasses import dataclass
 from types import FrameType
 from typing import Literal
 
+from undula.analysis.regimes import UNDECIDED
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.simulation import Simulation
 from undula.arrays import State
 from undula.models.model import Model
 from undula.numerics import memory as names
+
+#: Maxima of the energy after which a run to the settled state is asked whether its motion is
+#: irregular, and after twice as many again and again.
+FIRST_ASKED = 240
 
 
 @dataclass(frozen=True)
@@ -85,8 +90,14 @@ def carry_on(
     budget: float = float("inf"),
     progress: Callable[[Progress], None] | None = None,
 ) -> None:
-    """Advance a simulation to its end, or until Ctrl-C, or until the budget of seconds is spent."""
+    """Advance a simulation to its end, or until Ctrl-C, or until the budget of seconds is spent.
+
+    A run to the settled state also ends when its motion is seen to be chaotic or quasi-periodic.
+    """
     begun = time.monotonic()
+    due = FIRST_ASKED
+    while due <= simulation.watch.seen:
+        due *= 2
     with _interruptible() as interrupted:
         while simulation.advance():
             seconds = time.monotonic() - begun
@@ -98,6 +109,19 @@ def carry_on(
                 return
             if progress is not None:
                 progress(_progress(simulation, seconds))
+            if simulation.watch.seen >= due:
+                due *= 2
+                if _is_irregular(simulation):
+                    simulation.ending = Ending.IRREGULAR
+                    return
+
+
+def _is_irregular(simulation: Simulation) -> bool:
+    """Tell whether a run that waits for its motion to repeat itself is seen not to."""
+    if simulation.schedule.until != "settled" or simulation.settled is not None:
+        return False
+    run = Run.of(simulation)
+    return run.lyapunov is not None and run.verdict.name != UNDECIDED
 
 
 def _progress(simulation: Simulation, seconds: float) -> Progress:

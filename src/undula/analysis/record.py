@@ -12,8 +12,10 @@ import xarray as xr
 
 from undula.analysis.motion import Motion
 from undula.analysis.run import Run
+from undula.models.units import FILAMENT_UNITS, Units
 
-_TIME = "L^4 zeta_perp / B"
+# Files of filaments have named their unit of time like this from the first on.
+_TIME = {FILAMENT_UNITS.time: "L^4 zeta_perp / B"}
 _LIBRARIES = ("undula", "numpy", "numba")
 
 
@@ -36,9 +38,10 @@ def dataset_of(
         Variables and attributes as docs/output.md lists them. A close-up of the last periods has a
         dimension of its own, close_time.
     """
-    variables = _variables(run.motion, "")
+    units = run.model.units
+    variables = _variables(run.motion, units, "")
     if run.close_up is not None:
-        variables |= _variables(run.close_up, "close_")
+        variables |= _variables(run.close_up, units, "close_")
     links = run.motion.nodes.shape[1] - 1
     complete = inputs or {"model": _fields(run.model), "time": _fields(run.schedule)}
     summary = run.summary() | {"load": load or str(getattr(run.model, "load", ""))}
@@ -61,33 +64,35 @@ def dataset_of(
     )
 
 
-def _variables(motion: Motion, prefix: str) -> dict[str, Any]:
+def _variables(motion: Motion, units: Units, prefix: str) -> dict[str, Any]:
     time = f"{prefix}time"
     energetics = motion.energetics
 
-    def series(values: Any, units: str, meaning: str) -> Any:
-        return (time, np.asarray(values), {"units": units, "long_name": meaning})
+    def series(values: Any, unit: str, meaning: str) -> Any:
+        return (time, np.asarray(values), {"units": unit, "long_name": meaning})
 
     return {
-        time: series(motion.time, _TIME, "time"),
+        time: series(motion.time, _TIME.get(units.time, units.time), "time"),
         f"{prefix}nodes": (
             (time, "node", "axis"),
             motion.nodes,
             {"units": "L", "long_name": "position of the nodes"},
         ),
         f"{prefix}rotation_angle": series(motion.rotation_angle, "rad", "angle turned about z"),
-        f"{prefix}bending_energy": series(energetics.bending_energy, "B/L", "bending energy"),
+        f"{prefix}bending_energy": series(
+            energetics.bending_energy, units.energy, "bending energy"
+        ),
         f"{prefix}stretching_energy": series(
-            energetics.stretching_energy, "B/L", "stretching energy"
+            energetics.stretching_energy, units.energy, "stretching energy"
         ),
         f"{prefix}active_power": series(
-            energetics.active_power, "B^2/(zeta_perp L^5)", "power put in by the load"
+            energetics.active_power, units.power, "power put in by the load"
         ),
         f"{prefix}dissipation": series(
-            energetics.dissipation, "B^2/(zeta_perp L^5)", "power dissipated by drag"
+            energetics.dissipation, units.power, "power dissipated by drag"
         ),
-        f"{prefix}work": series(motion.work, "B/L", "energy put in since the start"),
-        f"{prefix}loss": series(motion.loss, "B/L", "energy dissipated since the start"),
+        f"{prefix}work": series(motion.work, units.energy, "energy put in since the start"),
+        f"{prefix}loss": series(motion.loss, units.energy, "energy dissipated since the start"),
     }
 
 

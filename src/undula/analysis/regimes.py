@@ -1,19 +1,34 @@
-"""The first verdict on a run: straight, spinning, planar flapping, or what is missing to tell.
+"""The verdict on a run: the name of what it ends in, or what is missing to tell.
 
-The words are those of the regimes' mathematics: `straight` is the equilibrium, `spinning` a shape
-that is steady but for its rotation about z, `planar flapping` a periodic motion in one plane
-through z. All that is neither is left `undecided`, with the reason.
+`straight` is the equilibrium; the other names are those of `undula.analysis.naming`, and `chaotic`.
+What has not settled is left `undecided`, with the reason and how much longer to run. A motion that
+is seen long enough and comes back to no shape is irregular; whether it is chaotic or on a torus is
+told by its Lyapunov exponent, which needs the model: `settle_irregular`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from undula.analysis.decay import LinearMotion
 from undula.analysis.evidence import Evidence, measure
+from undula.analysis.lyapunov import Lyapunov
+from undula.analysis.naming import (
+    MANY_MAXIMA,
+    PLANAR_TOLERANCE,
+    THIN,
+    Late,
+    Name,
+    flaps,
+    returning,
+    spins,
+    steady,
+    wandering,
+    windmills,
+)
 from undula.analysis.observables import displacement
 from undula.analysis.straightening import DECAY_FACTOR, LATE_FACTOR, Straightening, straightening
 from undula.analysis.window import STATIONARY, late_windows
@@ -22,22 +37,16 @@ from undula.arrays import Instants, Shapes
 UNDECIDED = "undecided"
 # A filament that stays this near to straight [L] has not moved: round-off alone gets it so far.
 UNMOVED = 1e-12
+# No criterion counts as met by more than this factor.
+MOST = 100.0
 # Without this many samples nothing can be said about a motion.
 MIN_SAMPLES = 8
-# Largest change of shape up to turns in spinning, relative: far above integration errors, far below
-# any modulation that would deserve another name.
-SHAPE_TOLERANCE = 5e-3
-# The same for the energy, which is quadratic in the shape.
-ENERGY_TOLERANCE = 1e-2
-# A steady shape must be seen to come round once; in less it could grow or shrink unseen.
-MIN_TURNS = 1.0
-# Share out of the plane below which a motion is planar: a trace of the start that still decays.
-PLANAR_TOLERANCE = 0.02
-# Share of the motion that its harmonics may leave unexplained: the highest ones of a violent
-# flapping, and one or two more where few samples a period make them fold together.
-PERIODIC_TOLERANCE = 0.05
 # With fewer samples a period than this, sampling is named first among what an undecided run lacks.
 MIN_SAMPLES_PER_PERIOD = 6.0
+# A Lyapunov exponent above so many of its errors is positive.
+SIGNIFICANT = 3.0
+# Neighbouring motions that part by less than this factor in a cycle do not part.
+LEAST_GROWTH = 0.05
 
 
 @dataclass(frozen=True)
@@ -47,19 +56,29 @@ class Verdict:
     Attributes
     ----------
     name
-        ``straight``, ``spinning``, ``planar flapping`` or ``undecided``.
+        ``straight``, ``undecided``, ``chaotic`` or one of `undula.analysis.naming`.
     reason
         One sentence: what was seen, or what is missing.
     evidence
         The numbers behind it by name; shares are relative, the rest in units of L, T and B.
     window_start
         Time from which on the run was judged [T].
+    margin
+        Factor by which the criteria of the name are met, at least 1 and not counted above 100; 0 if
+        undecided.
+    longer
+        How much longer to run, roughly, if undecided and that is what it takes [T].
+    late
+        The late window of an irregular motion, which waits for its Lyapunov exponent.
     """
 
     name: str
     reason: str
     evidence: dict[str, float]
     window_start: float
+    margin: float = 0.0
+    longer: float | None = None
+    late: Late | None = None
 
 
 def first_verdict(
@@ -92,7 +111,7 @@ def first_verdict(
         For any finite data, however short or odd.
     """
     if not np.any(displacement(nodes) > UNMOVED):
-        return Verdict("straight", "the filament has not moved", {}, _first(time))
+        return Verdict("straight", "the filament has not moved", {}, _first(time), margin=MOST)
     if len(time) < MIN_SAMPLES:
         return _too_few(time)
     fall = straightening(time, nodes)
@@ -100,11 +119,11 @@ def first_verdict(
         return _straight(fall, float(time[fall.start]))
     undecided: Verdict | None = None
     for start in _windows(time, nodes, bending_energy, settled_from):
-        late = slice(start, None)
-        seen = measure(time[late], nodes[late], bending_energy[late], rotation_angle[late])
-        name, reason = _judge(seen, fall)
-        verdict = Verdict(name, reason, seen.numbers(), float(time[start]))
-        if name != UNDECIDED:
+        part = slice(start, None)
+        seen = measure(time[part], nodes[part], bending_energy[part], rotation_angle[part])
+        late = Late(time[part], nodes[part], bending_energy[part], seen)
+        verdict = _verdict(late, fall)
+        if verdict.name != UNDECIDED:
             return verdict
         undecided = undecided or verdict
         # A shorter window may leave a transient behind; of a lasting modulation it would only show
@@ -112,6 +131,28 @@ def first_verdict(
         if not seen.transient:
             break
     return undecided or _too_few(time)
+
+
+def settle_irregular(verdict: Verdict, exponents: Lyapunov) -> Verdict:
+    """Return the verdict on an irregular motion in the light of its Lyapunov exponents."""
+    late = verdict.late
+    if late is None or late.back is None:
+        return verdict
+    value, error = exponents.beyond_symmetry, exponents.beyond_symmetry_error
+    evidence = verdict.evidence | {"lyapunov": value, "lyapunov_error": error}
+    cycle = 1.0 / abs(late.seen.frequency.value) if late.seen.frequency else late.back.period
+    told = f"neighbouring motions part at {value:.3g} +- {error:.1g} /T"
+    if value > SIGNIFICANT * error and value * cycle > LEAST_GROWTH:
+        reason = f"{told}, by exp({value * cycle:.2g}) a cycle"
+        name = Name("chaotic", reason, value / (SIGNIFICANT * error))
+    elif (value + SIGNIFICANT * error) * cycle < LEAST_GROWTH:
+        name = wandering(late)
+    else:
+        return replace(verdict, evidence=evidence, reason=f"irregular, and {told}: run longer")
+    reason = f"{name.reason} ({told})" if name.name != "chaotic" else name.reason
+    return replace(
+        verdict, name=name.name, reason=reason, evidence=evidence, margin=min(MOST, name.margin)
+    )
 
 
 def _first(time: Instants) -> float:
@@ -135,9 +176,10 @@ def _windows(
 
 def _straight(fall: Straightening, start: float) -> Verdict:
     evidence = {"decay_factor": fall.factor}
+    margin = min(MOST, fall.factor / DECAY_FACTOR)
     if fall.motion is None:
         reason = f"the displacement fell {fall.factor:.3g}-fold, too fast for the samples to show"
-        return Verdict("straight", reason, evidence, start)
+        return Verdict("straight", reason, evidence, start, margin=margin)
     motion = fall.motion
     evidence |= {
         "decay_rate": -motion.rate,
@@ -146,7 +188,7 @@ def _straight(fall: Straightening, start: float) -> Verdict:
         "zero_crossings": float(motion.crossings),
     }
     reason = f"{_manner(motion)}; the displacement fell {fall.factor:.3g}-fold from its peak"
-    return Verdict("straight", reason, evidence, start)
+    return Verdict("straight", reason, evidence, start, margin=margin)
 
 
 def _manner(motion: LinearMotion) -> str:
@@ -157,53 +199,66 @@ def _manner(motion: LinearMotion) -> str:
     return f"monotone decay ({crossings}) at rate {-motion.rate:.4g}/T"
 
 
-def _judge(seen: Evidence, fall: Straightening) -> tuple[str, str]:
-    if _steady(seen) and abs(seen.turns) >= MIN_TURNS:
-        change = f"its shape changes by {seen.shape_change:.2g} of itself"
-        return "spinning", f"rotates steadily: over {seen.turns:.3g} turns {change}"
-    if _flaps(seen):
-        plane = f"{seen.planarity:.2g} of the motion out of its plane"
-        return "planar flapping", f"periodic over {seen.periods:.3g} periods with {plane}"
-    return UNDECIDED, _missing(seen, fall)
+def _verdict(late: Late, fall: Straightening) -> Verdict:
+    """Name what a window shows, or say what is missing."""
+    start = float(late.time[0])
+    found = spins(late) or windmills(late) or flaps(late, STATIONARY)
+    if found is None and _seen_enough(late, fall):
+        found = returning(late)
+    if found is not None and found.margin >= THIN:
+        return Verdict(found.name, found.reason, late.numbers(), start, margin=found.margin)
+    if found is not None:
+        reason = f"on the border of {found.name}: {found.reason}"
+        return Verdict(UNDECIDED, reason, late.numbers(), start)
+    waits = late if _seen_enough(late, fall) and late.irregular else None
+    reason, longer = _missing(late, fall)
+    return Verdict(UNDECIDED, reason, late.numbers(), start, longer=longer, late=waits)
 
 
-def _steady(seen: Evidence) -> bool:
-    return seen.shape_change <= SHAPE_TOLERANCE and seen.energy_swing <= ENERGY_TOLERANCE
+def _seen_enough(late: Late, fall: Straightening) -> bool:
+    """Whether the window shows a motion, not the growth or decay of a small one."""
+    seen = late.seen
+    sampled = seen.samples_per_period >= MIN_SAMPLES_PER_PERIOD
+    return not (steady(seen) or fall.falling or seen.growth is not None) and sampled
 
 
-def _flaps(seen: Evidence) -> bool:
-    return (
-        seen.planarity <= PLANAR_TOLERANCE
-        and seen.misfit <= PERIODIC_TOLERANCE
-        and seen.drift <= STATIONARY
-        and seen.energy_swing > ENERGY_TOLERANCE
-    )
-
-
-def _missing(seen: Evidence, fall: Straightening) -> str:
-    """Say why there is no verdict, most specific reasons first."""
-    if _steady(seen):
+def _missing(late: Late, fall: Straightening) -> tuple[str, float | None]:
+    """Say why there is no verdict, most specific reasons first, and how much longer to run."""
+    seen, span = late.seen, float(late.time[-1] - late.time[0])
+    if steady(seen):
         turned = f"bent and steady, but seen to turn by only {abs(seen.turns):.2g} of a turn"
-        return f"{turned}: if it is not at rest, run longer"
+        return f"{turned}: if it is not at rest, run longer", span
     if fall.falling and fall.motion is not None:
         so_far = f"{fall.factor:.3g}-fold in all and {fall.late_factor:.3g}-fold in the later half"
         needed = f"{DECAY_FACTOR:g} and {LATE_FACTOR:g} count as straight"
-        return f"decaying at rate {-fall.motion.rate:.4g}/T, {so_far} ({needed}): run longer"
+        rate = -fall.motion.rate
+        to_go = float(np.log(max(DECAY_FACTOR / fall.factor, LATE_FACTOR))) / rate
+        return f"decaying at rate {rate:.4g}/T, {so_far} ({needed}): run longer", to_go
     if seen.growth is not None:
-        return f"still growing from straight at rate {seen.growth.rate:.4g}/T: run longer"
+        rate = seen.growth.rate
+        to_go = float(np.log(1.0 / seen.displacement)) / rate
+        return f"still growing from straight at rate {rate:.4g}/T: run longer", to_go
     if seen.samples_per_period < MIN_SAMPLES_PER_PERIOD:
-        return f"about {seen.samples_per_period:.2g} samples a period only: ask for more samples"
+        few = f"about {seen.samples_per_period:.2g} samples a period only"
+        return f"{few}: ask for more samples", None
+    if late.irregular and late.back is not None:
+        near = f"{late.back.distance:.2g} of itself after {late.back.every} maxima of its energy"
+        return f"irregular: its shape comes no nearer than {near}: run longer", span
     if seen.drift > STATIONARY or seen.transient:
-        return _unsettled(seen)
-    if seen.planarity > PLANAR_TOLERANCE:
-        neither = f"{seen.planarity:.1%} out of plane, shape changing by {seen.shape_change:.1%}"
-        return (
-            f"the motion has settled but is neither planar nor steady up to turns ({neither}): "
-            "modulated, precessing and non-planar motions are not told apart yet"
-        )
-    if seen.frequency is None:
-        return "planar, but no frequency stands out: run longer or ask for more samples"
-    return f"planar, but {seen.misfit:.1%} of the motion does not repeat: run longer"
+        return _unsettled(seen), span
+    return _few_returns(late), span
+
+
+def _few_returns(late: Late) -> str:
+    """Say what is missing of a motion that does not drift."""
+    back, plane = late.back, late.seen.planarity
+    where = "planar" if plane <= PLANAR_TOLERANCE else f"{plane:.1%} out of plane"
+    if back is None:
+        return f"{where}, but no maxima of its energy show that it repeats itself: run longer"
+    if back.repeats:
+        return f"{where}, but what does not repeat grows {back.growth:.2g}-fold: run longer"
+    seen = f"{back.maxima} maxima of its energy seen, {MANY_MAXIMA} show that it is irregular"
+    return f"{where}, and its shape comes back to {back.distance:.1%} only ({seen}): run longer"
 
 
 def _unsettled(seen: Evidence) -> str:

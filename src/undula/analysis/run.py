@@ -13,10 +13,12 @@ from undula.analysis.frequency import (
     whole_motion_frequency,
 )
 from undula.analysis.health import Health, health_of
+from undula.analysis.judging import Exponents, Judged, judge
+from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
 from undula.analysis.planes import planarity
-from undula.analysis.regimes import Verdict, first_verdict
+from undula.analysis.regimes import Verdict
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Settled
 from undula.analysis.simulation import Simulation
@@ -44,6 +46,8 @@ class Run:
         How well it was computed.
     checkpoint : mapping of str to ndarray
         Arrays from which it can be resumed exactly.
+    exponents : Exponents
+        When Lyapunov exponents are computed.
     """
 
     model: Model
@@ -55,9 +59,10 @@ class Run:
     settled: Settled | None
     health: Health
     checkpoint: Mapping[str, Array]
+    exponents: Exponents = Exponents.IF_IRREGULAR
 
     @classmethod
-    def of(cls, simulation: Simulation) -> Self:
+    def of(cls, simulation: Simulation, exponents: Exponents = Exponents.IF_IRREGULAR) -> Self:
         """Return the result that a simulation has come to so far."""
         motion = Motion.of(simulation.model, simulation.times, simulation.states)
         return cls(
@@ -70,27 +75,33 @@ class Run:
             settled=simulation.settled,
             health=health_of(simulation, motion),
             checkpoint=simulation.checkpoint(),
+            exponents=exponents,
         )
 
     @cached_property
-    def _judged(self) -> tuple[Verdict, Motion]:
-        """The verdict and the motion that it was made on: the close-up shows all but a decay."""
-        since = self.settled.since if self.settled else None
-        verdict = _verdict(self.motion, since)
-        if verdict.name == "straight" or self.close_up is None:
-            return verdict, self.motion
-        return _verdict(self.close_up, since), self.close_up
+    def _judged(self) -> Judged:
+        return judge(
+            self.model,
+            self.schedule,
+            (self.motion, self.close_up),
+            self.settled,
+            self.exponents,
+        )
 
     @property
     def verdict(self) -> Verdict:
         """What the run ends in."""
-        return self._judged[0]
+        return self._judged.verdict
+
+    @property
+    def lyapunov(self) -> Lyapunov | None:
+        """Lyapunov exponents, if they were asked for or it took them to tell what the motion is."""
+        return self._judged.exponents
 
     @cached_property
     def window(self) -> Motion:
         """The late part of the run that the verdict and all figures below are about."""
-        verdict, motion = self._judged
-        return motion.late(verdict.window_start)
+        return self._judged.motion.late(self.verdict.window_start)
 
     @cached_property
     def frequency(self) -> Frequency | None:
@@ -116,12 +127,20 @@ class Run:
     def summary(self) -> dict[str, Any]:
         """Return the answer of the run in plain JSON types."""
         late = self.window
+        units, force = self.model.units, self.model.load.force
+        further = units.force_in(force)
         return {
             "status": self.ending.value,
             "cause": self.cause or None,
+            "units": units.names(),
+            "force": force,
+            **({"force_in": further} if further else {}),
             "verdict": self.verdict.name,
             "reason": self.verdict.reason,
             "evidence": self.verdict.evidence,
+            "margin": self.verdict.margin,
+            "longer": self.verdict.longer,
+            "lyapunov": _exponents(self.lyapunov),
             "frequency": _value(self.frequency, sign=False),
             "frequency_error": _error(self.frequency),
             "rotation_frequency": _value(self.rotation_frequency),
@@ -151,14 +170,19 @@ class Run:
         )
 
 
-def _verdict(motion: Motion, since: float | None) -> Verdict:
-    return first_verdict(
-        motion.time,
-        motion.nodes,
-        motion.energetics.bending_energy,
-        motion.rotation_angle,
-        settled_from=since,
-    )
+def _exponents(found: Lyapunov | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    return {
+        "value": found.value,
+        "error": found.error,
+        "beyond_symmetry": found.beyond_symmetry,
+        "beyond_symmetry_error": found.beyond_symmetry_error,
+        "exponents": found.exponents.tolist(),
+        "errors": found.errors.tolist(),
+        "symmetries": found.symmetries,
+        "duration": found.duration,
+    }
 
 
 def _range(values: Range) -> dict[str, float]:

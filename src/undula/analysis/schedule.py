@@ -27,6 +27,7 @@ class Ending(Enum):
     RUNNING = "running"
     DONE = "done"
     SETTLED = "settled"
+    IRREGULAR = "irregular"
     LIMIT = "limit reached"
     INTERRUPTED = "interrupted"
     OUT_OF_TIME = "out of time"

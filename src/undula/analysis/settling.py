@@ -100,6 +100,8 @@ class Watch:
         Relative tolerance of the integration, which sets those of the verdict.
     start : float
         Displacement at the start, as the integrator measures it.
+    seen : int
+        Maxima of the energy in all.
     """
 
     rtol: float
@@ -108,15 +110,18 @@ class Watch:
     returns: deque[tuple[float, Nodes]] = field(
         default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MOST_MAXIMA)
     )
+    seen: int = 0
 
     def note(self, pace: Pace, returns: Sequence[tuple[float, Nodes]]) -> None:
         """Take down the pace at a look, and times and shapes at energy maxima since the last."""
         self.paces.append(pace)
         self.returns.extend(returns)
+        self.seen += len(returns)
 
     def to_arrays(self) -> dict[str, Array]:
         """Return all that was taken down, as arrays."""
         return {
+            "seen": np.array(float(self.seen)),
             "paces": np.array([astuple(pace) for pace in self.paces]).reshape(-1, 4),
             "return_times": np.array([time for time, _ in self.returns]),
             "return_nodes": np.array([nodes for _, nodes in self.returns]),
@@ -124,6 +129,7 @@ class Watch:
 
     def note_arrays(self, saved: Mapping[str, Array]) -> None:
         """Take down what `to_arrays` gave."""
+        self.seen = int(saved["seen"])
         self.paces.extend(Pace(*map(float, row)) for row in saved["paces"])
         times = map(float, saved["return_times"])
         self.returns.extend(zip(times, saved["return_nodes"], strict=True))

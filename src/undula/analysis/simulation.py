@@ -29,7 +29,7 @@ from undula.numerics.system import RATES
 #: Steps and samples between two looks at the run: some milliseconds.
 MOST_STEPS, MOST_SAMPLES = 500, 256
 #: Looks whose memory is kept, so that the last periods can be sampled again more finely.
-KEPT_MARKS = 40
+KEPT_MARKS = 400
 
 
 @dataclass
@@ -216,7 +216,7 @@ class Simulation:
             model, schedule, memory, float(saved["interval"]), [np.array(saved["states"])]
         )
         simulation.marks.appendleft(mark)
-        watched = ("paces", "return_times", "return_nodes")
+        watched = ("seen", "paces", "return_times", "return_nodes")
         simulation.watch.note_arrays({name: saved[f"watch_{name}"] for name in watched})
         return simulation
 

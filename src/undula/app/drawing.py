@@ -1,6 +1,6 @@
 """Figures and movies of stored runs, on disk."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -109,7 +109,9 @@ def check_straight(parameter: str) -> None:
         )
 
 
-def draw_straight(branch: StraightBranch, path: Path, *, title: str) -> None:
+def draw_straight(
+    branch: StraightBranch, path: Path, *, title: str, units: Mapping[str, str]
+) -> None:
     """Draw growth rate and frequency of the straight state against the force into a file.
 
     Raises
@@ -120,7 +122,7 @@ def draw_straight(branch: StraightBranch, path: Path, *, title: str) -> None:
     growth = GrowthCurve(
         branch.values, branch.rates, branch.frequencies, np.zeros_like(branch.rates), "spectral"
     )
-    save_figure(growth_figure(growth, title=title), path, overwrite=True)
+    save_figure(growth_figure(growth, title=title, units=units), path, overwrite=True)
 
 
 def draw_branch(branch: Branch[Any], runs: Sequence[xr.Dataset], path: Path, *, title: str) -> None:
@@ -141,6 +143,7 @@ def draw_thresholds(
     path: Path,
     *,
     title: str,
+    units: Mapping[str, str],
 ) -> None:
     """Draw a threshold along a parameter into a file.
 
@@ -154,7 +157,8 @@ def draw_thresholds(
         np.array([np.nan if getattr(one, what) is None else getattr(one, what) for one in found])
         for what in ("value", "error")
     )
-    figure = threshold_curves([(name, values, forces, errors)], parameter=along[0], title=title)
+    curves = [(name, values, forces, errors)]
+    figure = threshold_curves(curves, parameter=along[0], title=title, units=units)
     save_figure(figure, path, overwrite=True)
 
 

@@ -9,12 +9,13 @@ from undula.analysis.states import Flapping, NotFound, Spinning
 from undula.app.answers import Told
 from undula.app.progress import searching
 from undula.app.run_text import with_error as with_digits
+from undula.app.units_told import force_in, units_lines
 from undula.models.model import Model
+from undula.models.units import Units
 
-#: Units of what a state tells, by the beginning of its name.
+#: Units of what a state tells, by the beginning of its name; of energies they are the model's.
 _UNITS = {
     "frequency": "cycles per T",
-    "bending_energy": "B/L",
     "tip_radius": "L",
     "tip_height": "L",
     "leading_rate": "/T",
@@ -32,24 +33,32 @@ def find(model: Model, kind: str, *, converge: bool, title: str) -> Told:
     with searching(f"finding {kind}") as tell:
         found = converged(model, kind, progress=tell) if converge else kind_of(kind).find(model)
     if isinstance(found, NotFound):
-        return not_found(found, f"{title}: {kind}")
+        return not_found(found, f"{title}: {kind}", model.units)
     answer = (
         _limit_answer(found) if isinstance(found, Converged) else state_answer(with_error(found))
     )
     return Told(answer, _text(title, answer))
 
 
-def not_found(reason: NotFound, title: str) -> Told:
+def not_found(reason: NotFound, title: str, units: Units) -> Told:
     """Return the answer that there is no state, with the advice what to try."""
-    answer = {"status": "not found", "reason": reason.reason, "residual": reason.residual}
-    return Told(answer, f"{title} not found: {reason.reason}")
+    answer = {
+        "status": "not found",
+        "units": units.names(),
+        "reason": reason.reason,
+        "residual": reason.residual,
+    }
+    lines = [f"{title} not found: {reason.reason}", *units_lines(units.names())]
+    return Told(answer, "\n".join(lines))
 
 
 def state_answer(state: Spinning | Flapping) -> dict[str, Any]:
     """Return a state in plain JSON types."""
     shared = {
         "status": "done",
+        "units": state.model.units.names(),
         "force": state.force,
+        **force_in(state.model.units, state.force),
         "links": state.model.links,
         "frequency": state.frequency,
         "error": state.error,
@@ -104,9 +113,10 @@ def _range(values: Range) -> dict[str, float]:
 def _text(title: str, answer: dict[str, Any]) -> str:
     errors = answer.get("errors", {"frequency": answer["error"]})
     word = "stable" if answer["stable"] else "unstable"
-    lines = [f"{title}: {answer['kind']}, {word}"]
+    lines = [f"{title}: {answer['kind']}, {word}", *units_lines(answer["units"])]
+    known = _UNITS | {"bending_energy": answer["units"]["energy"]}
     for name, value in answer.items():
-        unit = next((unit for start, unit in _UNITS.items() if name.startswith(start)), None)
+        unit = next((unit for start, unit in known.items() if name.startswith(start)), None)
         if unit is None or value is None:
             continue
         if isinstance(value, dict):

@@ -14,8 +14,10 @@ from undula.app.answers import Told
 from undula.app.finding import not_found, state_answer
 from undula.app.progress import approached
 from undula.app.run_text import with_error
+from undula.app.units_told import force_in, units_lines
 from undula.errors import InputError
 from undula.models.model import Model
+from undula.models.units import Units
 
 #: What is told of each point of a branch.
 _KEPT = (
@@ -57,11 +59,11 @@ def follow_along(
     else:
         found = _between(model, kind, way.parameter, way.start, way.end)
     if isinstance(found, NotFound):
-        return not_found(found, f"{title}: {kind}"), None
-    answer = branch_answer(found, converge=converge)
+        return not_found(found, f"{title}: {kind}", model.units), None
+    answer = branch_answer(found, model.units, converge=converge)
     if way.start is None:
         answer["birth"] = "subcritical" if found.values[1] < found.values[0] else "supercritical"
-    return _told(answer, f"{title}: {kind}"), found
+    return _told(answer, f"{title}: {kind}", model.units), found
 
 
 def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[Told, StraightBranch]:
@@ -70,7 +72,8 @@ def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[To
     if way.start is None:
         raise InputError("the straight state ends at its onset; give a number to start at")
     straight = follow_straight(model, way.parameter, way.start, way.end)
-    return _told(straight_answer(straight), f"{title}: straight state"), straight
+    answer = straight_answer(straight, model.units)
+    return _told(answer, f"{title}: straight state", model.units), straight
 
 
 def _from_onset(model: Model, kind: str, way: Way) -> Branch[Any] | NotFound:
@@ -90,7 +93,7 @@ def _between(
         return follow(begun, parameter, end, progress=tell)
 
 
-def branch_answer(branch: Branch[Any], *, converge: bool) -> dict[str, Any]:
+def branch_answer(branch: Branch[Any], units: Units, *, converge: bool) -> dict[str, Any]:
     """Return a branch in plain JSON types, its bifurcations in the limit of many links if asked."""
     points = []
     for value, state in zip(branch.values, branch.states, strict=True):
@@ -99,20 +102,22 @@ def branch_answer(branch: Branch[Any], *, converge: bool) -> dict[str, Any]:
         points.append({branch.parameter: float(value)} | kept)
     return {
         "status": "done" if branch.complete else "stopped early",
+        "units": units.names(),
         "parameter": branch.parameter,
         "points": points,
         "bifurcations": [
-            _bifurcation_answer(branch.parameter, one, converge=converge)
+            _with_force(_bifurcation_answer(branch.parameter, one, converge=converge), units)
             for one in branch.bifurcations
         ],
     }
 
 
-def straight_answer(branch: StraightBranch) -> dict[str, Any]:
+def straight_answer(branch: StraightBranch, units: Units) -> dict[str, Any]:
     """Return the straight state along a parameter in plain JSON types."""
     columns = zip(branch.values, branch.rates, branch.frequencies, strict=True)
     return {
         "status": "done",
+        "units": units.names(),
         "parameter": branch.parameter,
         "points": [
             {
@@ -124,14 +129,17 @@ def straight_answer(branch: StraightBranch) -> dict[str, Any]:
             for value, rate, frequency in columns
         ],
         "bifurcations": [
-            {
-                "kind": "Hopf",
-                "value": value,
-                branch.parameter: value,
-                "error": None,
-                "frequency": frequency,
-                "second_frequency": None,
-            }
+            _with_force(
+                {
+                    "kind": "Hopf",
+                    "value": value,
+                    branch.parameter: value,
+                    "error": None,
+                    "frequency": frequency,
+                    "second_frequency": None,
+                },
+                units,
+            )
             for value, frequency in branch.hopf
         ],
     }
@@ -159,26 +167,33 @@ def _bifurcation_answer(parameter: str, one: Bifurcation[Any], *, converge: bool
     return answer
 
 
-def _told(answer: dict[str, Any], title: str) -> Told:
+def _with_force(bifurcation: dict[str, Any], units: Units) -> dict[str, Any]:
+    """Return a bifurcation, with its force in further units if it is a value of the force."""
+    return bifurcation | force_in(units, bifurcation.get(FORCE))
+
+
+def _told(answer: dict[str, Any], title: str, units: Units) -> Told:
     name = answer["parameter"]
     first, last = answer["points"][0], answer["points"][-1]
     lines = [
         f"{title} along {name} from {first[name]:.6g} to {last[name]:.6g},"
         f" {len(answer['points'])} points, {answer['status']}",
+        *units_lines(answer["units"], units.forces if name == FORCE else ()),
         f"  {name:>16} {'frequency':>12} {'leading rate':>13}",
         *(
             f"  {point[name]:>16.8g} {point['frequency']:>12.7g} {point['leading_rate']:>13.5g}"
             f"  {'stable' if point['stable'] else 'unstable'}"
             for point in answer["points"]
         ),
-        *(_bifurcation_line(one) for one in answer["bifurcations"]),
+        *(_bifurcation_line(one, units) for one in answer["bifurcations"]),
         *([f"  born {answer['birth']}ly at the onset"] if "birth" in answer else []),
     ]
     return Told(answer, "\n".join(lines))
 
 
-def _bifurcation_line(one: dict[str, Any]) -> str:
+def _bifurcation_line(one: dict[str, Any], units: Units) -> str:
     at = f"{one['value']:.10g}" if one["error"] is None else with_error(one["value"], one["error"])
+    at += f" {units.force}{units.beside(one['value'])}" if "force_in" in one else ""
     second = one["second_frequency"]
     beside = f", second frequency {second:.6g}" if second is not None else ""
     stability = f", stability {one['stability']}" if "stability" in one else ""

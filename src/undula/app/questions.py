@@ -108,15 +108,15 @@ def follow(
     way = Way(*parse_way("--along", along))
     _claim_figure(plot, overwrite=overwrite)
     stored = _runs_to_draw(kind, way.parameter, plot, runs or ())
-    title = wanted.tell({way.parameter})
+    model, title = build_model(wanted), wanted.tell({way.parameter})
     with compilation_announced(notice):
-        told, branch = follow_along(build_model(wanted), kind, way, converge=converge, title=title)
+        told, branch = follow_along(model, kind, way, converge=converge, title=title)
     drawn = None if branch is None else plot
     if drawn is not None:
         from undula.app.drawing import draw_branch, draw_straight
 
         if isinstance(branch, StraightBranch):
-            draw_straight(branch, drawn, title=title)
+            draw_straight(branch, drawn, title=title, units=model.units.names())
         elif branch is not None:
             draw_branch(branch, stored, drawn, title=title)
     told = _with_figure(told, drawn)
@@ -168,7 +168,7 @@ def threshold(
         if plot is not None:
             from undula.app.drawing import draw_thresholds
 
-            draw_thresholds(name, axis, found, plot, title=title)
+            draw_thresholds(name, axis, found, plot, title=title, units=model.units.names())
     told = _with_figure(told, plot)
     reply(told.answer, told.text, as_json=as_json)
     return DONE

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from undula.app.pace import duration
+from undula.app.units_told import units_lines
 
 Answer = Mapping[str, Any]
 
@@ -19,8 +20,8 @@ def run_text(answer: Answer) -> str:
     """
     lines = [(name, said) for name, said in _lines(answer) if said]
     width = max(len(name) for name, _ in lines)
-    head = f"{answer['load']}: {answer['verdict']}"
-    return "\n".join([head, *(f"  {name:<{width}}  {said}" for name, said in lines)])
+    head = [f"{answer['load']}: {answer['verdict']}", *units_lines(answer["units"])]
+    return "\n".join([*head, *(f"  {name:<{width}}  {said}" for name, said in lines)])
 
 
 def _lines(answer: Answer) -> Iterator[tuple[str, str]]:
@@ -29,7 +30,7 @@ def _lines(answer: Answer) -> Iterator[tuple[str, str]]:
     yield "frequency", _frequency(answer, "frequency")
     yield "rotation", _frequency(answer, "rotation_frequency")
     yield "shape", _frequency(answer, "shape_frequency")
-    yield "bending energy", _span(answer["bending_energy"], "B/L")
+    yield "bending energy", _span(answer["bending_energy"], answer["units"]["energy"])
     yield "tip radius", _span(answer["tip_radius"], "L")
     yield "tip height", _span(answer["tip_height"], "L")
     yield "health", _health(answer)
@@ -74,8 +75,9 @@ def _span(values: Mapping[str, float], unit: str) -> str:
 
 
 def _health(answer: Answer) -> str:
+    folded = ", a joint folded (angle up to pi)" if answer["folded"] else ""
     return (
         f"power balance to {answer['power_balance_error']:.1g}, length to"
         f" {answer['length_error']:.1g}, {answer['steps']} steps ({answer['rejected']} rejected),"
-        f" {answer['frame']} frame"
+        f" {answer['frame']} frame{folded}"
     )

@@ -3,7 +3,7 @@
 Plotting is imported only if there is something to plot: the answer itself takes milliseconds.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,11 +11,14 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.linear_results import CriticalCurve, GrowthCurve, Onset, Spectrum
+from undula.analysis.parameters import changed
 from undula.analysis.stability import critical_curve, critical_force, growth_curve, spectrum
 from undula.app import stability_text as text
 from undula.app.answers import Told
 from undula.app.progress import counted
+from undula.app.units_told import force_in
 from undula.models.model import Model
+from undula.models.units import Units
 from undula.studies.build import build_model
 from undula.studies.spec import StabilityInput
 
@@ -70,16 +73,17 @@ def ask(question: Question, figure: Path | None) -> Told:
 def _ask_onset(question: Question) -> tuple[Told, Callable[[], Any]]:
     model, options = _model(question)
     onset, at_force = critical_force(model, **options), spectrum(model, **options)
-    title = _title(question)
+    title, units = _title(question), model.units
 
     def draw() -> Any:
         from undula.views import stability_portrait
 
         far = _BEYOND * max(onset.force or 0.0, at_force.force, 1.0)
         growth = growth_curve(model, np.linspace(0.0, far, _SHOWN), **options)
-        return stability_portrait(onset, growth, at_force, title=title)
+        return stability_portrait(onset, growth, at_force, title=title, units=units.names())
 
-    return Told(onset_answer(onset, at_force), text.onset_text(title, onset, at_force)), draw
+    told = text.onset_text(title, onset, at_force, units)
+    return Told(onset_answer(onset, at_force, units), told), draw
 
 
 def _ask_growth(question: Question, forces: Values) -> tuple[Told, Callable[[], Any]]:
@@ -89,14 +93,14 @@ def _ask_growth(question: Question, forces: Values) -> tuple[Told, Callable[[], 
         growth = growth_curve(
             model, forces, parameter=name, values=values, progress=progress, **options
         )
-    title = _title(question)
+    title, units = _title(question), model.units
 
     def draw() -> Any:
         from undula.views import growth_figure
 
-        return growth_figure(growth, title=title)
+        return growth_figure(growth, title=title, units=units.names())
 
-    return Told(growth_answer(growth), text.growth_text(title, growth)), draw
+    return Told(growth_answer(growth, units), text.growth_text(title, growth, units)), draw
 
 
 def _ask_thresholds(
@@ -106,20 +110,23 @@ def _ask_thresholds(
     with counted("thresholds") as progress:
         curve = critical_curve(model, name, values, progress=progress, **options)
     title = _title(question)
+    # A chain of other links has other further units.
+    units = [changed(model, name, value).units for value in values]
 
     def draw() -> Any:
         from undula.views import threshold_figure
 
-        return threshold_figure(curve, title=title)
+        return threshold_figure(curve, title=title, units=model.units.names())
 
-    return Told(thresholds_answer(curve), text.thresholds_text(title, curve)), draw
+    return Told(thresholds_answer(curve, units), text.thresholds_text(title, curve, units)), draw
 
 
-def onset_answer(onset: Onset, at_force: Spectrum) -> dict[str, Any]:
+def onset_answer(onset: Onset, at_force: Spectrum, units: Units) -> dict[str, Any]:
     """Return an onset, with the spectrum at the given force, in plain JSON types."""
     later = [
         {
             "force": crossing.force,
+            **force_in(units, crossing.force),
             "frequency": crossing.frequency,
             "growth_slope": crossing.growth_slope,
             "error": crossing.error,
@@ -129,11 +136,13 @@ def onset_answer(onset: Onset, at_force: Spectrum) -> dict[str, Any]:
     ]
     leading = zip(at_force.rates, at_force.frequencies, at_force.errors, strict=True)
     return {
+        "units": units.names(),
         "method": onset.method,
         "paper_time": onset.paper_time,
-        **_thresholds(onset),
+        **_thresholds(onset, units),
         "later": later,
         "force": at_force.force,
+        **force_in(units, at_force.force),
         "spectrum": [
             {"rate": float(rate), "frequency": float(frequency), "error": float(error)}
             for rate, frequency, error in leading
@@ -141,7 +150,7 @@ def onset_answer(onset: Onset, at_force: Spectrum) -> dict[str, Any]:
     }
 
 
-def growth_answer(growth: GrowthCurve) -> dict[str, Any]:
+def growth_answer(growth: GrowthCurve, units: Units) -> dict[str, Any]:
     """Return leading rates and frequencies, one entry for each force (and value)."""
     points = []
     for place in np.ndindex(growth.rates.shape):
@@ -155,28 +164,36 @@ def growth_answer(growth: GrowthCurve) -> dict[str, Any]:
             "error": float(growth.errors[place]),
         }
         points.append(of_parameter | point)
-    return {"method": growth.method, "paper_time": growth.paper_time, "points": points}
+    return {
+        "units": units.names(),
+        "method": growth.method,
+        "paper_time": growth.paper_time,
+        "points": points,
+    }
 
 
-def thresholds_answer(curve: CriticalCurve) -> dict[str, Any]:
+def thresholds_answer(curve: CriticalCurve, units: Sequence[Units]) -> dict[str, Any]:
     """Return the thresholds along a parameter, one entry for each value."""
     return {
+        "units": units[0].names(),
         "method": curve.method,
         "paper_time": curve.onsets[0].paper_time,
         "parameter": curve.parameter,
         "thresholds": [
-            {curve.parameter: float(value)} | _thresholds(onset)
-            for value, onset in zip(curve.values, curve.onsets, strict=True)
+            {curve.parameter: float(value)} | _thresholds(onset, each)
+            for value, onset, each in zip(curve.values, curve.onsets, units, strict=True)
         ],
     }
 
 
-def _thresholds(onset: Onset) -> dict[str, Any]:
+def _thresholds(onset: Onset, units: Units) -> dict[str, Any]:
     hopf = onset.hopf
     return {
         "oscillatory_force": onset.oscillatory_force,
+        **force_in(units, onset.oscillatory_force, "oscillatory_"),
         "oscillatory_error": onset.oscillatory_error,
-        "hopf_force": hopf.force if hopf else None,
+        "hopf_force": onset.force,
+        **force_in(units, onset.force, "hopf_"),
         "hopf_frequency": hopf.frequency if hopf else None,
         "hopf_growth_slope": hopf.growth_slope if hopf else None,
         "error": hopf.error if hopf else None,

@@ -6,20 +6,25 @@ import numpy as np
 
 from undula.analysis.linear_results import CriticalCurve, Crossing, GrowthCurve, Onset, Spectrum
 from undula.app.run_text import with_error
+from undula.app.units_told import units_lines
+from undula.models.units import Units
 
 #: Rates and frequencies are per this time; the printed equation's is shorter by the drag ratio.
 _TIME = {False: "T", True: "(T/gamma)"}
 
 
-def onset_text(title: str, onset: Onset, at_force: Spectrum) -> str:
+def onset_text(title: str, onset: Onset, at_force: Spectrum, units: Units) -> str:
     """Return thresholds, later crossings and the spectrum at the given force, one a line."""
-    lines = list(_onset_lines(onset, at_force))
+    lines = list(_onset_lines(onset, at_force, units))
     width = max(len(name) for name, _ in lines)
-    head = f"{title}: stability of the straight state, method {onset.method}"
-    return "\n".join([head, *(f"  {name:<{width}}  {said}" for name, said in lines)])
+    head = [
+        f"{title}: stability of the straight state, method {onset.method}",
+        *units_lines(units.names(), units.forces),
+    ]
+    return "\n".join([*head, *(f"  {name:<{width}}  {said}" for name, said in lines)])
 
 
-def growth_text(title: str, growth: GrowthCurve) -> str:
+def growth_text(title: str, growth: GrowthCurve, units: Units) -> str:
     """Return leading rates and frequencies as a table."""
     places = list(np.ndindex(growth.rates.shape))
     columns: list[tuple[str, Sequence[str]]] = []
@@ -33,40 +38,44 @@ def growth_text(title: str, growth: GrowthCurve) -> str:
         ("error", [f"{growth.errors[at]:.1g}" for at in places]),
     ]
     unit = _TIME[growth.paper_time]
-    return f"{title}: leading eigenvalue, rates per {unit}, frequencies in cycles per {unit}\n" + (
-        _table(columns)
-    )
+    head = f"{title}: leading eigenvalue, rates per {unit}, frequencies in cycles per {unit}"
+    return "\n".join([head, *units_lines(units.names()), _table(columns)])
 
 
-def thresholds_text(title: str, curve: CriticalCurve) -> str:
-    """Return thresholds along a parameter as a table."""
-    unit = _TIME[curve.onsets[0].paper_time]
+def thresholds_text(title: str, curve: CriticalCurve, units: Sequence[Units]) -> str:
+    """Return thresholds along a parameter as a table, with the units of the model at each value."""
+    unit, first = _TIME[curve.onsets[0].paper_time], units[0]
+    hopf = [each.force_in(force) for each, force in zip(units, curve.forces, strict=True)]
     columns = [
         (curve.parameter, [f"{value:.6g}" for value in curve.values]),
         ("rings from", [_number(force, 10) for force in curve.oscillatory_forces]),
         ("Hopf force", [_number(force, 10) for force in curve.forces]),
         ("error", [_number(error, 1) for error in curve.errors]),
+        *((f"in {name}", [_number(force[name], 6) for force in hopf]) for name in first.forces),
         ("frequency", [_number(frequency, 8) for frequency in curve.frequencies]),
         ("growth slope", [_number(slope, 6) for slope in curve.growth_slopes]),
     ]
-    head = f"{title}: thresholds of the straight state in B/L^2, frequencies in cycles per {unit}"
-    return f"{head}\n{_table(columns)}"
+    head = (
+        f"{title}: thresholds of the straight state in {first.force}, frequencies in cycles per"
+        f" {unit}"
+    )
+    return "\n".join([head, *units_lines(first.names(), first.forces), _table(columns)])
 
 
-def _onset_lines(onset: Onset, at_force: Spectrum) -> Iterator[tuple[str, str]]:
+def _onset_lines(onset: Onset, at_force: Spectrum, units: Units) -> Iterator[tuple[str, str]]:
     unit = _TIME[onset.paper_time]
     if onset.oscillatory_force is not None:
-        yield "rings from", f"{with_error(onset.oscillatory_force, onset.oscillatory_error)} B/L^2"
+        yield "rings from", _force(onset.oscillatory_force, onset.oscillatory_error, units)
     if onset.hopf is None:
         yield "oscillates", f"never: {onset}"
     else:
-        yield "oscillates from", f"{with_error(onset.hopf.force, onset.hopf.error)} B/L^2"
-        yield from _crossing_lines(onset.hopf, unit)
+        yield "oscillates from", _force(onset.hopf.force, onset.hopf.error, units)
+        yield from _crossing_lines(onset.hopf, unit, units.force)
     for crossing in onset.later:
         what = "joins" if crossing.growth_slope > 0.0 else "calms down"
         yield (
             "later",
-            f"at {with_error(crossing.force, crossing.error)} B/L^2 a pair of"
+            f"at {_force(crossing.force, crossing.error, units)} a pair of"
             f" {crossing.frequency:.6g} cycles per {unit} {what}",
         )
     for value, error in zip(at_force.values, at_force.errors, strict=True):
@@ -78,10 +87,14 @@ def _onset_lines(onset: Onset, at_force: Spectrum) -> Iterator[tuple[str, str]]:
         yield f"at {at_force.force:.6g}", f"{told}, {swings} cycles per {unit}" if swings else told
 
 
-def _crossing_lines(crossing: Crossing, unit: str) -> Iterator[tuple[str, str]]:
+def _force(force: float, error: float | None, units: Units) -> str:
+    return f"{with_error(force, error)} {units.force}{units.beside(force)}"
+
+
+def _crossing_lines(crossing: Crossing, unit: str, of_force: str) -> Iterator[tuple[str, str]]:
     frequency = with_error(crossing.frequency, crossing.frequency_error)
     yield "frequency", f"{frequency} cycles per {unit}"
-    yield "growth slope", f"{crossing.growth_slope:.6g} per {unit} and B/L^2"
+    yield "growth slope", f"{crossing.growth_slope:.6g} per {unit} and {of_force}"
 
 
 def _rate(value: float, error: float) -> str:

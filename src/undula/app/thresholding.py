@@ -2,19 +2,24 @@
 
 from typing import Any
 
+from undula.analysis.parameters import changed
 from undula.analysis.thresholds import Threshold, threshold, threshold_curve
 from undula.app.answers import Told
 from undula.app.progress import counted, searching
 from undula.app.run_text import with_error
+from undula.app.units_told import force_in, units_lines
 from undula.models.model import Model
+from undula.models.units import Units
 
 
 def tell_threshold(model: Model, name: str, *, converge: bool, title: str) -> Told:
     """Find one threshold."""
     with searching(name) as tell:
         found = threshold(model, name, converged=converge, progress=tell)
-    answer = {"status": "done", "threshold": name} | _answer(found)
-    return Told(answer, f"{title}: {name} {_line(found)}")
+    units = model.units
+    answer = {"status": "done", "units": units.names(), "threshold": name} | _answer(found, units)
+    lines = [f"{title}: {name} {_line(found, units)}", *units_lines(units.names(), units.forces)]
+    return Told(answer, "\n".join(lines))
 
 
 def tell_thresholds(
@@ -29,24 +34,31 @@ def tell_thresholds(
     parameter, values = along
     with counted(f"{name} along {parameter}") as tell:
         found = threshold_curve(model, name, parameter, values, converged=converge, progress=tell)
+    # A chain of other links has other further units.
+    each = [
+        (value, one, changed(model, parameter, value).units)
+        for value, one in zip(values, found, strict=True)
+    ]
+    names = model.units.names()
     answer = {
         "status": "done",
+        "units": names,
         "threshold": name,
         "parameter": parameter,
-        "thresholds": [
-            {parameter: value} | _answer(one) for value, one in zip(values, found, strict=True)
-        ],
+        "thresholds": [{parameter: value} | _answer(one, units) for value, one, units in each],
     }
     lines = [
         f"{title}: {name} along {parameter}",
-        *(f"  {value:>12.6g}  {_line(one)}" for value, one in zip(values, found, strict=True)),
+        *units_lines(names, model.units.forces),
+        *(f"  {value:>12.6g}  {_line(one, units)}" for value, one, units in each),
     ]
     return Told(answer, "\n".join(lines)), found
 
 
-def _answer(found: Threshold) -> dict[str, Any]:
+def _answer(found: Threshold, units: Units) -> dict[str, Any]:
     return {
         "value": found.value,
+        **force_in(units, found.value),
         "error": found.error,
         "frequency": found.frequency,
         "second_frequency": found.second_frequency,
@@ -55,10 +67,10 @@ def _answer(found: Threshold) -> dict[str, Any]:
     }
 
 
-def _line(found: Threshold) -> str:
+def _line(found: Threshold, units: Units) -> str:
     if found.value is None:
         return f"none: {found.reason}"
     return (
-        f"at force {with_error(found.value, found.error)} B/L^2 ({found.bifurcation}),"
-        f" {found.frequency:.7g} cycles per T"
+        f"at force {with_error(found.value, found.error)} {units.force}{units.beside(found.value)}"
+        f" ({found.bifurcation}), {found.frequency:.7g} cycles per T"
     )

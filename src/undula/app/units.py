@@ -1,4 +1,4 @@
-"""Dimensionless numbers to physical ones and back, in the units of a microscope."""
+"""Dimensionless numbers of a filament to physical ones and back, in units of a microscope."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

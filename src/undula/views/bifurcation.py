@@ -45,7 +45,7 @@ def bifurcation_diagram(
         The line above.
     runs : sequence of xarray.Dataset
         Stored runs to compare with, as `load_result` gives them. Those that end straight, have no
-        frequency or do not hold the parameter are counted in a note.
+        frequency, do not hold the parameter or are in other units are counted in a note.
 
     Returns
     -------
@@ -55,11 +55,11 @@ def bifurcation_diagram(
     Raises
     ------
     InputError
-        There is no branch, or they are along different parameters.
+        There is no branch, or they are along different parameters or in different units.
     """
-    parameter = _common_parameter(branches)
+    parameter, units = _common_parameter(branches), _common_units(branches)
     drawn = named_branches(branches)
-    points = stored_points(runs, parameter)
+    points = stored_points(runs, parameter, units)
     span = _span([*(one.line.values for one in drawn), [point.value for point in points]])
     with style.figure_style():
         figure = style.headed_figure(title, paper_time=False)
@@ -73,7 +73,7 @@ def bifurcation_diagram(
             draw_line(upper, one, one.line.frequencies)
             draw_energy(lower, one)
         _draw_runs(upper, lower, points)
-        _name_axes(figure, upper, lower, parameter)
+        _name_axes(figure, upper, lower, parameter, units)
         _name_all(figure, drawn, points, len(runs) - len(points))
     return figure
 
@@ -87,6 +87,19 @@ def _common_parameter(branches: Sequence[Branch[Any]]) -> str:
             f"branches are along {' and '.join(parameters)}: give branches along one parameter"
         )
     return parameters[0]
+
+
+def _common_units(branches: Sequence[Branch[Any]]) -> style.UnitNames:
+    # States that are no more than their figures have no model, and pass for a filament's.
+    models = [getattr(branch.states[0], "model", None) for branch in branches]
+    units = [style.FILAMENT if model is None else model.units.names() for model in models]
+    others = [each["force"] for each in units if each != units[0]]
+    if others:
+        raise InputError(
+            f"branches have forces in {units[0]['force']} and in {others[0]}: give branches in the"
+            " same units"
+        )
+    return units[0]
 
 
 def _span(places: Sequence[ArrayLike]) -> tuple[float, float]:
@@ -116,15 +129,17 @@ def _draw_runs(upper: Axes, lower: Axes, points: Sequence[StoredPoint]) -> None:
     lower.vlines(places, lows, highs, color=style.INK, lw=1.1, zorder=5, gid="runs, range")
 
 
-def _name_axes(figure: Figure, upper: Axes, lower: Axes, parameter: str) -> None:
+def _name_axes(
+    figure: Figure, upper: Axes, lower: Axes, parameter: str, units: style.UnitNames
+) -> None:
     for axes in (upper, lower):
         axes.margins(y=0.08)
         axes.yaxis.set_major_locator(MaxNLocator(5))
     upper.tick_params(labelbottom=False)
     upper.set_ylabel(style.frequency_label(paper_time=False))
-    lower.set_ylabel(style.ENERGY_LABEL)
+    lower.set_ylabel(style.energy_label(units))
     forces = parameter == "load.force"
-    lower.set_xlabel(style.FORCE_LABEL if forces else style.parameter_label(parameter))
+    lower.set_xlabel(style.force_label(units) if forces else style.parameter_label(parameter))
     figure.align_ylabels([upper, lower])
 
 
@@ -149,5 +164,6 @@ def _name_all(
         handlelength=2.4,
     )
     if left_out:
-        note = f"{left_out} of {left_out + len(points)} runs left out: without frequency or value"
+        all_runs = left_out + len(points)
+        note = f"{left_out} of {all_runs} runs left out: no frequency or value in these units"
         figure.text(_RIGHT, 0.025, note, ha="right", color=style.QUIET, fontsize=8)

@@ -19,7 +19,7 @@ class BranchLine:
     values, frequencies : ndarray of shape (k,)
         The parameter, and the frequency [cycles per T].
     low, high, mean : ndarray of shape (k,)
-        Bending energy over a cycle [B/L].
+        Bending energy over a cycle.
     stable : ndarray of bool, shape (k - 1,)
         Whether the branch is stable between one point and the next.
     marks : ndarray of int, shape (b,)

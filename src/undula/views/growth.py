@@ -17,7 +17,9 @@ from undula.views import style
 from undula.views.growth_maps import draw_maps
 
 
-def growth_figure(growth: GrowthCurve, *, title: str) -> Figure:
+def growth_figure(
+    growth: GrowthCurve, *, title: str, units: style.UnitNames = style.FILAMENT
+) -> Figure:
     """Draw the leading eigenvalue against the force, and against a parameter if there is one.
 
     Parameters
@@ -26,6 +28,8 @@ def growth_figure(growth: GrowthCurve, *, title: str) -> Figure:
         Rates and frequencies; NaN where there are none.
     title : str
         The line above.
+    units : mapping of str to str
+        Names of the model's units, as `Units.names` gives them; by default a filament's.
 
     Returns
     -------
@@ -36,14 +40,19 @@ def growth_figure(growth: GrowthCurve, *, title: str) -> Figure:
     with style.figure_style():
         figure = style.headed_figure(title, paper_time=growth.paper_time)
         if growth.values is None:
-            draw_growth(figure, growth, left=0.09, right=0.975, top=0.9)
+            draw_growth(figure, growth, units, left=0.09, right=0.975, top=0.9)
         else:
-            draw_maps(figure, growth, growth.values)
+            draw_maps(figure, growth, growth.values, units)
     return figure
 
 
 def draw_growth(
-    figure: Figure, growth: GrowthCurve, left: float, right: float, top: float
+    figure: Figure,
+    growth: GrowthCurve,
+    units: style.UnitNames,
+    left: float,
+    right: float,
+    top: float,
 ) -> tuple[Axes, Axes]:
     """Draw rate and frequency in two panels over one force axis, the unstable forces shaded.
 
@@ -53,6 +62,8 @@ def draw_growth(
         Where to draw them.
     growth : GrowthCurve
         A curve without a parameter.
+    units : mapping of str to str
+        Names of the model's units.
     left, right, top : float
         Edges of the block in parts of the figure.
 
@@ -83,7 +94,7 @@ def draw_growth(
     upper.tick_params(labelbottom=False)
     upper.set_ylabel(style.growth_rate_label(paper_time=growth.paper_time))
     lower.set_ylabel(style.frequency_label(paper_time=growth.paper_time))
-    lower.set_xlabel(style.FORCE_LABEL)
+    lower.set_xlabel(style.force_label(units))
     set_span(upper, growth.forces)
     start_at_zero(lower)
     figure.align_ylabels([upper, lower])

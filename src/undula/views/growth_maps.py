@@ -20,7 +20,7 @@ _HOPF = ("growth rate 0: Hopf curve", "-")
 _RINGING = ("edge of oscillation: frequency 0 below", "--")
 
 
-def draw_maps(figure: Figure, growth: GrowthCurve, values: Array) -> None:
+def draw_maps(figure: Figure, growth: GrowthCurve, values: Array, units: style.UnitNames) -> None:
     """Draw rate and frequency over (parameter, force), with the boundaries of both on each."""
     across, up = np.argsort(values), np.argsort(growth.forces)
     places, forces = values[across], growth.forces[up]
@@ -37,7 +37,7 @@ def draw_maps(figure: Figure, growth: GrowthCurve, values: Array) -> None:
     squares = _continued(frequencies**2)
     for axes in (left, right):
         axes.set_xlabel(style.parameter_label(growth.parameter or ""))
-        axes.set_ylabel(style.FORCE_LABEL)
+        axes.set_ylabel(style.force_label(units))
         _draw_zero(axes, places, forces, rates, *_HOPF)
         _draw_zero(axes, places, forces, squares, *_RINGING)
     _name_boundaries(figure, unknown=not np.all(np.isfinite(rates)))

@@ -49,7 +49,7 @@ def tip_row(scene: Scene) -> Row:
 def energy_row(scene: Scene) -> Row:
     """Give the row of the bending energy."""
     energy = Curve("", style.ENERGY_COLOUR, scene.energy, _between(scene, scene.energy))
-    return Row(style.ENERGY_LABEL, (energy,))
+    return Row(style.energy_label(scene.units), (energy,))
 
 
 def power_row(scene: Scene) -> Row:
@@ -57,7 +57,7 @@ def power_row(scene: Scene) -> Row:
     active = _between(scene, scene.active)
     lost = _between(scene, scene.dissipation)
     return Row(
-        style.POWER_LABEL,
+        style.power_label(scene.units),
         (
             Curve("active", style.ACTIVE_COLOUR, scene.active, active, width=2.6),
             Curve("dissipation", style.DISSIPATION_COLOUR, scene.dissipation, lost, ":"),

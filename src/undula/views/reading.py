@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from undula.errors import InputError
+from undula.views import style
 from undula.views.scene import Floats, Scene, turning_points
 
 NEEDED = ("nodes", "bending_energy", "active_power", "dissipation", "rotation_angle")
@@ -46,6 +47,12 @@ def read_scene(run: xr.Dataset) -> Scene:
     return _scene(run, "", summary, duration, _close_up(run, summary, duration))
 
 
+def units_of(summary: Mapping[str, object]) -> style.UnitNames:
+    """Return the names of a run's units; without any it is that of a filament."""
+    named = summary.get("units")
+    return named if isinstance(named, Mapping) else style.FILAMENT
+
+
 def _close_up(run: xr.Dataset, summary: Mapping[str, object], duration: float) -> Scene | None:
     """Take the close-up of a run; a run that ends at rest is told by the whole of it alone."""
     stored = run.sizes.get(f"{_CLOSE}time", 0) >= 2
@@ -75,6 +82,7 @@ def _scene(
         _floats(run[f"{prefix}bending_energy"]),
         _floats(run[f"{prefix}active_power"]),
         _floats(run[f"{prefix}dissipation"]),
+        units=units_of(summary),
         load=str(summary.get("load", "")),
         verdict=verdict,
         frequency=frequency,

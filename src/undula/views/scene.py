@@ -1,5 +1,6 @@
 """What a run has to show: its arrays, its verdict, its time scales, and the spans to draw."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +27,9 @@ class Scene:
         Angle of the frame in which the motion is slowest between samples [rad]: the stored
         rotation angle, or zero where turning the motion back would only roughen it.
     energy, active, dissipation : ndarray of shape (m,)
-        Bending energy [B/L]; active power and dissipation [B/(LT)].
+        Bending energy; active power and dissipation, both energy per T.
+    units : mapping of str to str
+        Names of the units of its numbers by quantity.
     load, verdict : str
         The words of the run's summary.
     frequency : float or None
@@ -47,6 +50,7 @@ class Scene:
     energy: Floats
     active: Floats
     dissipation: Floats
+    units: Mapping[str, str]
     load: str
     verdict: str
     frequency: float | None

@@ -22,7 +22,12 @@ _LOW, _HIGH = 1.04, 1.13
 
 
 def stability_portrait(
-    onset: Onset, growth: GrowthCurve, spectrum: Spectrum, *, title: str
+    onset: Onset,
+    growth: GrowthCurve,
+    spectrum: Spectrum,
+    *,
+    title: str,
+    units: style.UnitNames = style.FILAMENT,
 ) -> Figure:
     """Draw how the straight filament loses its stability, and the mode that leads at one force.
 
@@ -36,6 +41,8 @@ def stability_portrait(
         Its leading mode is drawn: over one cycle, or as one curve if it does not oscillate.
     title : str
         The line above.
+    units : mapping of str to str
+        Names of the model's units, as `Units.names` gives them; by default a filament's.
 
     Returns
     -------
@@ -59,7 +66,7 @@ def stability_portrait(
         )
     with style.figure_style():
         figure = style.headed_figure(title, paper_time=growth.paper_time)
-        upper, lower = draw_growth(figure, growth, left=0.085, right=0.6, top=0.82)
+        upper, lower = draw_growth(figure, growth, units, left=0.085, right=0.6, top=0.82)
         marked = [mark.force for mark in _marks(onset)]
         set_span(upper, np.array([*growth.forces, *marked, spectrum.force]))
         _draw_marks(upper, lower, onset)

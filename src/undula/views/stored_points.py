@@ -9,6 +9,8 @@ import xarray as xr
 
 from undula.analysis.observables import Range
 from undula.errors import is_number
+from undula.views.reading import units_of
+from undula.views.style import UnitNames
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class StoredPoint:
     frequency : float
         Cycles per T.
     energy : Range
-        Bending energy at the end of the run [B/L].
+        Bending energy at the end of the run.
     """
 
     value: float
@@ -30,7 +32,9 @@ class StoredPoint:
     energy: Range
 
 
-def stored_points(runs: Sequence[xr.Dataset], parameter: str) -> list[StoredPoint]:
+def stored_points(
+    runs: Sequence[xr.Dataset], parameter: str, units: UnitNames
+) -> list[StoredPoint]:
     """Take the points from the runs that have one.
 
     Parameters
@@ -39,19 +43,23 @@ def stored_points(runs: Sequence[xr.Dataset], parameter: str) -> list[StoredPoin
         Stored runs, as `load_result` gives them.
     parameter : str
         Such as "load.force".
+    units : mapping of str to str
+        Names of the diagram's units.
 
     Returns
     -------
     list of StoredPoint
-        Without the runs whose parameter cannot be read, and without those that end straight or
-        in a motion without a frequency.
+        Without the runs whose parameter cannot be read, without those that end straight or in a
+        motion without a frequency, and without those in other units.
     """
-    found = [_point(run, parameter) for run in runs]
+    found = [_point(run, parameter, units) for run in runs]
     return [point for point in found if point is not None]
 
 
-def _point(run: xr.Dataset, parameter: str) -> StoredPoint | None:
+def _point(run: xr.Dataset, parameter: str, units: UnitNames) -> StoredPoint | None:
     summary = _mapping(json.loads(run.attrs.get("summary", "{}")))
+    if units_of(summary) != units:
+        return None
     value = _parameter(_mapping(json.loads(run.attrs.get("input", "{}"))), parameter)
     energy = _mapping(summary.get("bending_energy"))
     numbers = (value, summary.get("frequency"), *(energy.get(k) for k in ("min", "max", "mean")))

@@ -5,6 +5,7 @@ of colour blindness and in grey print. Shapes in time run through viridis from i
 dark end, so that later always means darker.
 """
 
+from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from typing import Any
 
@@ -12,6 +13,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+
+from undula.models.units import FILAMENT_UNITS
+
+#: Names of units by quantity, as `undula.models.units.Units.names` gives them.
+UnitNames = Mapping[str, str]
+FILAMENT: UnitNames = FILAMENT_UNITS.names()
 
 INK = "#222222"
 QUIET = "#6b6b6b"
@@ -27,14 +34,10 @@ ENERGY_COLOUR = "#8a3d78"
 ACTIVE_COLOUR = "#E69F00"
 DISSIPATION_COLOUR = "#222222"
 
-TIME_LABEL = r"time $t$  $[T=\zeta_\perp L^4/B]$"
 SHORT_TIME_LABEL = r"time $t$  $[T]$"
 TIP_LABEL = "tip position\n" r"$x,\ y,\ z$  $[L]$"
-ENERGY_LABEL = "bending energy\n" r"$E$  $[B/L]$"
-POWER_LABEL = "power\n" r"$P$  $[B/(LT)]$"
 RATE_UNIT = r"cycles per $T$"
 PHASE_LABEL = "phase in the last period  [periods]"
-FORCE_LABEL = r"force $F$  $[B/L^2]$"
 ARC_LABEL = r"arc length $s$  $[L]$"
 DISPLACEMENT_LABEL = "displacement, arbitrary scale"
 CYCLE_LABEL = "phase  [cycles]"
@@ -44,6 +47,7 @@ _PARAMETER_LABELS = {
     "load.position": r"position $s_a$  $[L]$",
     "load.exponent": r"exponent $p$",
     "model.drag_ratio": r"drag ratio $\gamma$",
+    "model.base_spring": r"base spring $K_0$  $[K]$",
 }
 _PALE, _DARK = 0.08, 0.97
 _SETTINGS = {
@@ -109,6 +113,27 @@ def shape_colours(count: int) -> NDArray[np.float64]:
     return np.asarray(mpl.colormaps["viridis_r"](places), dtype=np.float64)
 
 
+def force_label(units: UnitNames) -> str:
+    """Name the force with its unit."""
+    return rf"force $F$  $[{_symbols(units['force'])}]$"
+
+
+def energy_label(units: UnitNames) -> str:
+    """Name the bending energy with its unit."""
+    return "bending energy\n" rf"$E$  $[{_symbols(units['energy'])}]$"
+
+
+def power_label(units: UnitNames) -> str:
+    """Name the power with its unit, which is that of the energy per T."""
+    above, _, below = _symbols(units["energy"]).partition("/")
+    return "power\n" rf"$P$  $[{above}/{f'({below}T)' if below else 'T'}]$"
+
+
+def time_label(units: UnitNames) -> str:
+    """Name the time, and tell what T is."""
+    return rf"time $t$  $[T={_symbols(units['time'])}]$"
+
+
 def growth_rate_label(*, paper_time: bool) -> str:
     """Name the growth rate with its unit."""
     unit = r"\gamma/T" if paper_time else "1/T"
@@ -139,6 +164,11 @@ def headed_figure(title: str, *, paper_time: bool) -> Figure:
         note = r"time unit of the printed equation, $T/\gamma$"
         figure.text(0.978, 0.955, note, ha="right", color=QUIET)
     return figure
+
+
+def _symbols(unit: str) -> str:
+    """Write the name of a unit as a formula."""
+    return unit.replace("zeta", r"\zeta").replace("_perp", r"_\perp")
 
 
 def _plain_defaults() -> dict[str, object]:

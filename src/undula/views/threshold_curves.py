@@ -26,19 +26,25 @@ _DECADES_FROM = 30.0
 
 
 def threshold_curves(
-    curves: Sequence[tuple[str, Array, Array, Array]], *, parameter: str, title: str
+    curves: Sequence[tuple[str, Array, Array, Array]],
+    *,
+    parameter: str,
+    title: str,
+    units: style.UnitNames = style.FILAMENT,
 ) -> Figure:
     """Draw forces over a parameter, one line with markers for each kind of threshold.
 
     Parameters
     ----------
     curves : sequence of tuple
-        For each its name, the values of the parameter, the forces [B/L^2], NaN where there is
-        none, and their errors: three arrays of one shape (m,).
+        For each its name, the values of the parameter, the forces, NaN where there is none, and
+        their errors: three arrays of one shape (m,).
     parameter : str
         Such as "load.slope".
     title : str
         The line above.
+    units : mapping of str to str
+        Names of the models' units, as `Units.names` gives them; by default a filament's.
 
     Returns
     -------
@@ -61,7 +67,7 @@ def threshold_curves(
             _draw(axes, *curve, colour, marker)
         _set_spans(axes, curves)
         axes.set_xlabel(style.parameter_label(parameter))
-        axes.set_ylabel(style.FORCE_LABEL)
+        axes.set_ylabel(style.force_label(units))
         handles, names = axes.get_legend_handles_labels()
         place: Any = {"loc": "upper left", "bbox_to_anchor": (0.08, 0.935), "handlelength": 2.4}
         figure.legend(handles, names, ncols=len(names), **place)

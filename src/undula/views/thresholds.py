@@ -20,7 +20,9 @@ _REGIONS = (
 _DECADES_FROM = 30.0
 
 
-def threshold_figure(curve: CriticalCurve, *, title: str) -> Figure:
+def threshold_figure(
+    curve: CriticalCurve, *, title: str, units: style.UnitNames = style.FILAMENT
+) -> Figure:
     """Draw the Hopf force and the oscillatory force over a parameter, and the frequency at onset.
 
     Parameters
@@ -29,6 +31,8 @@ def threshold_figure(curve: CriticalCurve, *, title: str) -> Figure:
         The thresholds; a value whose neighbours have none is drawn as a dot.
     title : str
         The line above.
+    units : mapping of str to str
+        Names of the model's units, as `Units.names` gives them; by default a filament's.
 
     Returns
     -------
@@ -53,7 +57,7 @@ def threshold_figure(curve: CriticalCurve, *, title: str) -> Figure:
         start_at_zero(lower)
         lower.yaxis.set_major_locator(MaxNLocator(4))
         upper.tick_params(labelbottom=False)
-        upper.set_ylabel(style.FORCE_LABEL)
+        upper.set_ylabel(style.force_label(units))
         lower.set_ylabel(f"frequency at onset\n[{style.frequency_unit(paper_time=paper_time)}]")
         lower.set_xlabel(style.parameter_label(curve.parameter))
         figure.align_ylabels([upper, lower])

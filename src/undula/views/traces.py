@@ -56,7 +56,7 @@ def draw_traces(
     for row, line in zip(rows, axes, strict=True):
         _draw_row(scene, row(scene), row(scene.detail), line)
     for place, axis in enumerate(axes[-1]):
-        axis.set_xlabel(style.TIME_LABEL if place == 0 else style.SHORT_TIME_LABEL)
+        axis.set_xlabel(style.time_label(scene.units) if place == 0 else style.SHORT_TIME_LABEL)
     axes[0][0].set_title(
         "whole run" if scene.interpolable else "whole run, at stored times", loc="left"
     )
