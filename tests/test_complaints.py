@@ -46,7 +46,7 @@ def complaint_on(**tables: Any) -> str:
             "profile",
             "tpi",
             "load.profile = 'tpi' is not known; load.profile takes 'tip', 'point', 'linear',"
-            " 'power' or 'table'",
+            " 'power', 'table' or 'beads'",
         ),
         ("load", "profile", 5, "load.profile = 5 is a whole number; load.profile takes 'tip'"),
         (

@@ -210,7 +210,7 @@ def test_a_result_of_another_format_is_refused_by_its_name(
 ) -> None:
     path = tmp_path / "later.nc"
     with monkeypatch.context() as later:
-        later.setattr(store, "FORMAT", "run 9")
+        later.setattr(store, "RUN", store.Kind("run 9", "undula run"))
         write_run(path, run(), checkpoint())
     assert "has the format 'run 9', but" in complaint(lambda: load_result(path))
 

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from undula.models.profiles import ProfileLoad, TableLoad
     from undula.models.scales import Scales
     from undula.models.starts import from_state, helix, kicked, mode, planar, straight
+    from undula.studies.steps_store import load_steps
     from undula.studies.store import load_result
 
 _HOMES = {
@@ -70,6 +71,7 @@ _HOMES = {
     "integrate": "undula.analysis.integrate",
     "kicked": "undula.models.starts",
     "load_result": "undula.studies.store",
+    "load_steps": "undula.studies.steps_store",
     "mode": "undula.models.starts",
     "planar": "undula.models.starts",
     "spectrum": "undula.analysis.stability",
@@ -113,6 +115,7 @@ __all__ = [
     "integrate",
     "kicked",
     "load_result",
+    "load_steps",
     "mode",
     "observables",
     "planar",

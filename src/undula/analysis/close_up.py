@@ -33,7 +33,8 @@ def close_up(simulation: Simulation) -> Motion | None:
     count = int((end - start) / interval)
     if count < 2:
         return None
-    times = end - interval * np.arange(count, -1, -1, dtype=np.float64)
+    # Round-off must not put the first before the mark.
+    times = np.maximum(end - interval * np.arange(count, -1, -1, dtype=np.float64), start)
     return Motion.of(simulation.model, times, simulation.again(times))
 
 

@@ -168,6 +168,41 @@ def movie(
 
 
 @app.command()
+def step(
+    along: Annotated[
+        str,
+        typer.Option(metavar="KEY=START:STOP:STEP", help="The values, as load.force=0:60:0.5."),
+    ],
+    file: Input = None,
+    changes: Changes = None,
+    down: Annotated[bool, typer.Option("--down", help="Go back through the same values.")] = False,
+    thresholds: Annotated[
+        bool, typer.Option("--thresholds", help="Compare with the solved thresholds of the force.")
+    ] = False,
+    kick: Annotated[float, typer.Option(help="Largest turn of a link before a step, rad.")] = 1e-3,
+    seed: Annotated[int, typer.Option(help="Seed of the random kicks.")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder of the results.", show_default=False)
+    ] = None,
+    overwrite: Overwrite = False,
+    budget: Budget = None,
+    as_json: Json = False,
+) -> int:
+    """Settle at a value of a parameter, change it, settle again from there, and so on.
+
+    Writes steps.nc and steps.png into DIR, by default results/ and the name of FILE. A series that
+    was stopped early goes on with the same command.
+    """
+    from undula.app.stepping import Job, plan, step_along
+
+    seconds = _seconds(budget)
+    series = plan(file, changes or (), along, back=down, kick=kick, seed=seed)
+    result = (out or Path("results") / (file.stem if file else "step")) / "steps.nc"
+    job = Job(series, result, overwrite=overwrite, with_thresholds=thresholds)
+    return step_along(job, budget=seconds, as_json=as_json)
+
+
+@app.command()
 def units(
     force: Annotated[float | None, typer.Option(help="A force in B/L^2, to pN.")] = None,
     time: Annotated[float | None, typer.Option(help="A time in T, to s.")] = None,
@@ -183,7 +218,7 @@ def units(
     slenderness: Annotated[float, typer.Option(help="Radius over length.")] = 0.01,
     as_json: Json = False,
 ) -> int:
-    """Convert dimensionless numbers to physical ones, and back."""
+    """Convert dimensionless numbers of a filament to physical ones, and back."""
     from undula.app.answers import DONE, reply
     from undula.app.units import convert, given, scales_of, units_answer, units_text
 

@@ -25,6 +25,25 @@ def counted(task: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
+def stepped(task: str, parameter: str, done: int, total: int) -> Iterator[Callable[..., None]]:
+    """Yield a function to be called with a number of steps done, its parameter's value and a time.
+
+    `done` steps of all were done before; what they took says nothing about those to come.
+    """
+    began: float | None = None
+    with meter(task) as show:
+
+        def tell(now: int, value: float, reached: float) -> None:
+            nonlocal began
+            began = time.monotonic() if began is None else began  # by now all is compiled
+            here = f"{now} of {total} steps, {parameter} = {value:.6g} at t = {reached:.4g} T"
+            to_go = (time.monotonic() - began) * (total - now) / max(now - done, 1)
+            show(now / total, f"{here}, {duration(to_go)} to go" if now > done else here)
+
+        yield tell
+
+
+@contextmanager
 def approached(task: str, start: float, end: float) -> Iterator[Callable[[float], None]]:
     """Yield a function to be called with the value that was reached on the way to `end`."""
     began = time.monotonic()

@@ -1,6 +1,7 @@
 """Values from the command line: a range such as ``0:60:121``, or a list such as ``20,30,40``."""
 
 import math
+from decimal import Decimal
 
 import numpy as np
 
@@ -8,6 +9,8 @@ from undula.errors import InputError
 
 # More points than this are a slip of the finger, not a curve.
 _MOST = 1_000_000
+# Each step is a run of its own.
+_MOST_STEPS = 10_000
 
 
 def parse_values(option: str, text: str) -> tuple[float, ...]:
@@ -72,6 +75,60 @@ def parse_way(option: str, text: str) -> tuple[str, float | None, float]:
     return name, start, end
 
 
+def parse_steps(option: str, text: str) -> tuple[str, tuple[float, ...]]:
+    """Return the parameter and the values of ``load.force=0:60:0.5``.
+
+    Parameters
+    ----------
+    option
+        The name under which the text was given, for complaints.
+    text
+        ``KEY=START:STOP:STEP``. The values go from START by STEP as far as STOP, which is one of
+        them if it is hit; down to a lower STOP the sign of STEP may be left out.
+
+    Returns
+    -------
+    tuple of str and tuple of float
+        The name, and two values at least; the decimals that one would write, without round-off.
+
+    Raises
+    ------
+    InputError
+        There is no parameter, what follows is not three finite numbers, or STEP is 0, leads away
+        from STOP, or makes less than one step or far too many.
+    """
+    name, equals, way = (part.strip() for part in text.partition("="))
+    parts = way.split(":")
+    wrong = InputError(
+        f"{option} {text} has no 'KEY=START:STOP:STEP'; write it like load.force=0:60:0.5"
+    )
+    if not (name and equals and len(parts) == 3):
+        raise wrong
+    numbers = (_number(option, text, part, wrong) for part in parts)
+    # The shortest decimals of a number are those that were written.
+    start, stop, step = (Decimal(repr(number)) for number in numbers)
+    count = _steps_between(f"{option} {text}", start, stop, step)
+    step = abs(step) if stop > start else -abs(step)
+    return name, tuple(float(start + number * step) for number in range(count + 1))
+
+
+def _steps_between(told: str, start: Decimal, stop: Decimal, step: Decimal) -> int:
+    if start == stop:
+        raise InputError(f"{told} goes nowhere; give two different numbers to go between")
+    if step == 0:
+        raise InputError(f"{told} has a step of 0, which leads nowhere; give a step above 0")
+    if step < 0 and stop > start:
+        raise InputError(f"{told} has a step that leads away from {stop}; leave out its sign")
+    ratio = abs((stop - start) / step)
+    if ratio < 1:
+        raise InputError(f"{told} has a step longer than the whole way; give a shorter one")
+    if ratio >= _MOST_STEPS + 1:
+        raise InputError(
+            f"{told} takes more than {_MOST_STEPS} steps; give a longer step or a shorter way"
+        )
+    return int(ratio)
+
+
 def parse_axis(option: str, text: str) -> tuple[str, tuple[float, ...]]:
     """Return the parameter and the values of ``load.slope=-1:1:41``.
 
@@ -86,11 +143,11 @@ def parse_axis(option: str, text: str) -> tuple[str, tuple[float, ...]]:
     return name, parse_values(f"{option} {name}", values)
 
 
-def _number(option: str, text: str, part: str) -> float:
+def _number(option: str, text: str, part: str, wrong: InputError | None = None) -> float:
     try:
         value = float(part)
     except ValueError:
-        raise _wrong(option, text) from None
+        raise wrong or _wrong(option, text) from None
     if not math.isfinite(value):
         raise InputError(f"{option} {text}: {part.strip()} is not a finite number; give one")
     return value

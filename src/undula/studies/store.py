@@ -2,10 +2,12 @@
 
 The root group holds the trajectory, as any NetCDF reader shows it; the group ``checkpoint``
 holds the arrays that continue the run, bit for bit. A file appears whole or not at all, and
-the same content always gives the same bytes.
+the same content always gives the same bytes. Other kinds of results are files of a root group
+alone.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,24 @@ import xarray as xr
 from undula.errors import InputError
 from undula.studies.whole_file import write_whole
 
-FORMAT = "run 1"
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of result file.
+
+    Attributes
+    ----------
+    format
+        Its name and number, which every file of it carries.
+    command
+        What writes such files.
+    """
+
+    format: str
+    command: str
+
+
+RUN = Kind("run 1", "undula run")
 
 _ENGINE: Any = "h5netcdf"
 _CHECKPOINT = "checkpoint"
@@ -54,7 +73,22 @@ def write_run(
         The file exists and `overwrite` is false, or the folder cannot be written or is full.
         A file that was there before is then left as it was.
     """
-    write_whole(path, _image(dataset, checkpoint), overwrite=overwrite)
+    write_whole(path, run_image(dataset, checkpoint), overwrite=overwrite)
+
+
+def run_image(dataset: xr.Dataset, checkpoint: Mapping[str, npt.NDArray[Any]]) -> bytes:
+    """Return the bytes of the file that :func:`write_run` writes."""
+    return _image(RUN, dataset, checkpoint)
+
+
+def write_result(path: Path, dataset: xr.Dataset, kind: Kind, *, overwrite: bool = False) -> None:
+    """Write a result of another kind, without a checkpoint, as :func:`write_run` does."""
+    write_whole(path, _image(kind, dataset), overwrite=overwrite)
+
+
+def read_result(path: Path, kind: Kind) -> xr.Dataset:
+    """Read a result of another kind, as :func:`load_result` does."""
+    return _read(path, kind)
 
 
 def load_result(path: Path | str) -> xr.Dataset:
@@ -75,7 +109,7 @@ def load_result(path: Path | str) -> xr.Dataset:
     InputError
         The file is missing, unreadable, cut short, or not a result file of undula.
     """
-    return _read(Path(path), group=None)
+    return _read(Path(path), RUN)
 
 
 def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
@@ -96,18 +130,19 @@ def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
     InputError
         The file is missing, unreadable, cut short, or not a result file of undula.
     """
-    arrays = _read(path, _CHECKPOINT)
+    arrays = _read(path, RUN, _CHECKPOINT)
     return {str(name).removeprefix(_SAVED): array.values for name, array in arrays.items()}
 
 
-def _image(dataset: xr.Dataset, checkpoint: Mapping[str, npt.NDArray[Any]]) -> bytes:
+def _image(
+    kind: Kind, dataset: xr.Dataset, checkpoint: Mapping[str, npt.NDArray[Any]] | None = None
+) -> bytes:
     """Return the bytes of the file: made in memory, a full disk cannot leave HDF5 half open."""
-    arrays = xr.Dataset(
-        {f"{_SAVED}{name}": _as_variable(name, array) for name, array in checkpoint.items()}
-    )
     image = BytesIO()
-    _append(image, dataset.assign_attrs(undula_format=FORMAT), group=None)
-    _append(image, arrays, group=_CHECKPOINT)
+    _append(image, dataset.assign_attrs(undula_format=kind.format), group=None)
+    if checkpoint is not None:
+        named = {f"{_SAVED}{name}": _as_variable(name, kept) for name, kept in checkpoint.items()}
+        _append(image, xr.Dataset(named), group=_CHECKPOINT)
     return image.getvalue()
 
 
@@ -137,21 +172,19 @@ def _encoding(variable: xr.Variable) -> dict[str, Any]:
     return keep | {"zlib": True, "complevel": 1, "shuffle": True}
 
 
-def _read(path: Path, group: str | None) -> xr.Dataset:
-    content = _read_bytes(path)
+def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
+    content = _read_bytes(path, kind)
     try:
         # Only h5py fails quietly on files that are cut short, so it has the first look.
         with h5py.File(BytesIO(content), "r") as root:
-            _check_format(path, root.attrs)
+            _check_format(path, kind, root.attrs)
         with _opened(content, group) as stored:
             return stored.load().drop_encoding()
     except InputError:
         raise
     except Exception as error:
         # The HDF5 stack has no common exception for broken files: nearly any may come.
-        raise InputError(
-            f"{path} is cut short or damaged; make it again with undula run"
-        ) from error
+        raise _damaged(path, kind) from error
 
 
 def _opened(content: bytes, group: str | None) -> xr.Dataset:
@@ -165,7 +198,7 @@ def _opened(content: bytes, group: str | None) -> xr.Dataset:
     )
 
 
-def _read_bytes(path: Path) -> bytes:
+def _read_bytes(path: Path, kind: Kind) -> bytes:
     try:
         with path.open("rb") as file:
             signature = file.read(len(_HDF5_SIGNATURE))
@@ -179,18 +212,27 @@ def _read_bytes(path: Path) -> bytes:
             f"cannot read the result file {path} ({reason}); give a readable result file"
         ) from error
     if signature and _HDF5_SIGNATURE.startswith(signature):
-        raise InputError(f"{path} is cut short or damaged; make it again with undula run")
-    raise InputError(f"{path} is not a NetCDF4 file; give a result file written by undula run")
+        raise _damaged(path, kind)
+    raise InputError(f"{path} is not a NetCDF4 file; give a result file written by {kind.command}")
 
 
-def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:
+def _damaged(path: Path, kind: Kind) -> InputError:
+    return InputError(f"{path} is cut short or damaged; make it again with {kind.command}")
+
+
+def _check_format(path: Path, kind: Kind, attributes: Mapping[str, Any]) -> None:
     found = attributes.get("undula_format")
     if found is None:
         raise InputError(
-            f"{path} was not written by undula; give a result file written by undula run"
+            f"{path} was not written by undula; give a result file written by {kind.command}"
         )
-    if found != FORMAT:
+    if str(found).split()[:1] != kind.format.split()[:1]:
         raise InputError(
-            f"{path} has the format {str(found)!r}, but this version of undula reads {FORMAT!r};"
-            " use the version that wrote it"
+            f"{path} is a result of another command ({str(found)!r}); give a result file written"
+            f" by {kind.command}"
+        )
+    if found != kind.format:
+        raise InputError(
+            f"{path} has the format {str(found)!r}, but this version of undula reads"
+            f" {kind.format!r}; use the version that wrote it"
         )

@@ -5,6 +5,7 @@ from undula.views.growth import growth_figure
 from undula.views.movie import movie
 from undula.views.portrait import portrait
 from undula.views.stability import stability_portrait
+from undula.views.steps import step_diagram
 from undula.views.threshold_curves import threshold_curves
 from undula.views.thresholds import threshold_figure
 
@@ -14,6 +15,7 @@ __all__ = [
     "movie",
     "portrait",
     "stability_portrait",
+    "step_diagram",
     "threshold_curves",
     "threshold_figure",
 ]
