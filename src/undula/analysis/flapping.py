@@ -24,7 +24,8 @@ from undula.models.starts import from_state, planar
 from undula.numerics.closure import Closure
 from undula.numerics.continuation import Point
 from undula.numerics.floquet import floquet
-from undula.numerics.flow import linearised_flow
+from undula.numerics.flow import RADAU_9, linearised_flow
+from undula.numerics.interval import Outcome
 from undula.numerics.orbits import (
     LastShot,
     Orbit,
@@ -36,9 +37,13 @@ from undula.numerics.orbits import (
 )
 from undula.numerics.shooting import Shooting, Shot
 
-# Steps of half a beat: with 3 stages the relative error of the frequency is then some 1e-7, which
-# each answer states for itself.
-INTERVALS = 32
+# Steps of half a beat, of order 9: the relative error of the frequency is then some 1e-11 to 1e-8,
+# which each answer states for itself.
+INTERVALS, METHOD = 32, RADAU_9
+_TURNS_LOST = (
+    "a motion was found whose joints jump by full turns, which is no beat; follow the branch from a"
+    " smaller force, or give the beat found there as a guess"
+)
 # The run that a beat is taken from: a start large enough to be quick, and how many beats it may
 # take, counted as if their time fell as the force grows beyond the onset.
 _START, _BEATS = 0.3, 200.0
@@ -70,6 +75,8 @@ def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping
     if search.orbit is None:
         residual = search.solution.residual if search.solution else None
         return NotFound(f"no planar beat was found from the guess: {search.advice}", residual)
+    if not _keeps_turns(flat, search.orbit.shot):
+        return NotFound(_TURNS_LOST)
     found, half = _judged(model, search.orbit), search.orbit.shot.duration
     return replace(found, time_error=found.frequency * time_error(search.orbit) / half)
 
@@ -90,7 +97,7 @@ def flapping_judge(
 
     def judge(problem: OrbitProblem, u: Array, p: float) -> Flapping:
         orbit = orbit_at(problem, u, p)
-        if orbit is None:
+        if orbit is None or not _keeps_turns(model.with_(confined=True), orbit.shot):
             raise UnresolvedError
         return _judged(changed(model, parameter, p), orbit)
 
@@ -123,19 +130,13 @@ def flapping_unknowns(state: Flapping) -> Array:
     return np.append(start, 0.5 * state.period)
 
 
-def _mirrored(y: Array) -> Array:
-    """Return a vector of the planar equations (x, z, T at each node) with x reflected."""
-    mirrored = np.array(y)
-    mirrored[::3] *= -1.0
-    return mirrored
-
-
 def _shooting(model: Model, parameter: str) -> Shooting:
     flat = model.with_(confined=True)
-    return Shooting(
+    return (_Continuous if flat.winds else Shooting)(
         equations_at=lambda p: changed(flat, parameter, p).equations,
-        closure=Closure(_mirrored),
+        closure=Closure(flat.equations.mirrored),
         intervals=INTERVALS,
+        method=METHOD,
     )
 
 
@@ -143,14 +144,17 @@ def _start_and_half_period(
     flat: Model, guess: Run | Flapping | None
 ) -> tuple[Array, float] | NotFound:
     if isinstance(guess, Flapping):
-        return _positions(flat, guess.nodes[-1]), 0.5 * guess.period
+        energies = guess.planar.observe(guess.unknowns).bending_energy
+        return _positions(flat, _beginning(flat, guess.nodes, energies)), 0.5 * guess.period
     run = guess or integrate(flat, planar(flat, _START), until="settled", limit=_longest(flat))
     if guess is None and run.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt  # which a run takes as its end, with what there is
     if run.frequency is None or run.frequency.value == 0.0:
         whose = "given" if guess else "confined"
         return NotFound(f"the {whose} run does not beat ({run.verdict.name}): {_onset_text(flat)}")
-    return _positions(flat, run.motion.nodes[-1]), 0.5 / abs(run.frequency.value)
+    half = 0.5 / abs(run.frequency.value)
+    last = run.motion.late(run.motion.time[-1] - 2.0 * half)
+    return _positions(flat, _beginning(flat, last.nodes, last.energetics.bending_energy)), half
 
 
 def _longest(flat: Model) -> float:
@@ -173,6 +177,36 @@ def _onset_text(flat: Model) -> str:
     return f"planar flapping begins at force {pair.p:.6g}, and this one is {flat.load.force:.6g}"
 
 
+class _Continuous(Shooting):
+    """Shots that find the full turns of joints on their way from the start, where there are none.
+
+    Those of another motion, close as it may be, need not be theirs at the same instants.
+    """
+
+    def shoot(self, u: Array, p: float, guess: Array | None = None) -> Shot | Outcome:  # noqa: ARG002
+        """Return the shot of u, begun from nothing but its start."""
+        return super().shoot(u, p)
+
+
+def _keeps_turns(flat: Model, shot: Shot) -> bool:
+    """Tell whether half a beat accounts for the full turns of joints that wind up.
+
+    They are known from one interval to the next as long as an angle changes by less than half of
+    one; so it has to from the mirrored end to the first interval.
+    """
+    ends = shot.flow.stages[:, -1]
+    angles = flat.joint_angles(np.concatenate([flat.equations.mirrored(ends[-1:]), ends]))
+    return not flat.winds or float(np.abs(np.diff(angles, axis=0)).max()) < np.pi
+
+
+def _beginning(flat: Model, nodes: Array, energies: Array) -> Array:
+    """Return the shape of a beat (m, N + 1, 3) to begin at.
+
+    Joints that wind up are found again from positions where they are wound up least.
+    """
+    return np.asarray(nodes[np.argmin(energies) if flat.winds else -1])
+
+
 def _positions(flat: Model, nodes: Array) -> Array:
     return flat.admissible(from_state(flat, nodes))
 
@@ -193,7 +227,7 @@ def _judged(model: Model, orbit: Orbit) -> Flapping:
         model=model,
         period=2.0 * half,
         time=np.arange(1, 2 * len(ends) + 1) * half / len(ends),
-        unknowns=np.concatenate([ends, np.apply_along_axis(_mirrored, 1, ends)]),
+        unknowns=np.concatenate([ends, model.with_(confined=True).equations.mirrored(ends)]),
         residual=float(np.abs((shot.end - shot.y)[shot.moving]).max()),
         in_plane=in_plane,
         out_of_plane=out_of_plane,
@@ -209,7 +243,8 @@ def _across(model: Model, orbit: Orbit) -> Array:
     columns = np.zeros((4 * links, links))
     columns[1::4] = np.eye(links)
     stages = in_space(shot.flow.stages)
-    change = linearised_flow(model.equations, in_space(shot.y), stages, shot.duration, columns)
+    start, method = in_space(shot.y), orbit.problem.shooting.method
+    change = linearised_flow(model.equations, start, stages, shot.duration, columns, (), method)
     assert change is not None  # the stages solve equations that are regular in the plane
     return change.by_start[1::4]
 

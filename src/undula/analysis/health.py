@@ -1,13 +1,16 @@
 """How well a run was computed: the figures that every result carries."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from undula.analysis.motion import Motion
 from undula.analysis.simulation import Simulation
-from undula.arrays import Instants, Shapes
+from undula.arrays import Array, Instants, Shapes
+from undula.models.joint import FOLDED
 from undula.numerics import memory as names
+from undula.numerics.system import RATES
 
 #: Energy [B/L] that round-off alone puts through: positions to 1e-15 L, under a force of some 1000.
 ROUND_OFF = 1e-12
@@ -26,6 +29,12 @@ class Health:
     length_error : float
         Largest relative change of length of a link at any sample; of extensible links, their
         strain.
+    largest_joint_angle : float
+        Largest angle between neighbouring links, the clamp's axis before the first, at any sample
+        [rad]; beyond pi where joints wind up.
+    folded : bool
+        Whether the angle of a joint came to pi, where its energy has a kink, at a sample or between
+        two. Never where joints wind up.
     smallest_step, largest_step : float
         Of the accepted steps [T].
     steps, rejected, failed : int
@@ -40,6 +49,8 @@ class Health:
 
     power_balance_error: float
     length_error: float
+    largest_joint_angle: float
+    folded: bool
     smallest_step: float
     largest_step: float
     steps: int
@@ -55,9 +66,12 @@ def health_of(simulation: Simulation, motion: Motion) -> Health:
     """Return the health of a simulation whose samples are `motion`."""
     real, count = simulation.memory.real, simulation.memory.count
     steps = int(count[names.STEPS])
+    angles = np.abs(simulation.model.joint_angles(simulation.states[:, :-RATES]))
     return Health(
         power_balance_error=power_balance_error(motion),
         length_error=length_error(motion.nodes),
+        largest_joint_angle=float(angles.max()),
+        folded=not simulation.model.winds and folded(motion, angles),
         smallest_step=float(real[names.SMALLEST_STEP]) if steps else 0.0,
         largest_step=float(real[names.LARGEST_STEP]),
         steps=steps,
@@ -83,3 +97,54 @@ def length_error(nodes: Shapes) -> float:
     """Return the largest relative deviation of a link's length from 1/N."""
     lengths = np.linalg.norm(np.diff(nodes, axis=1), axis=2)
     return float(np.abs(lengths * lengths.shape[1] - 1.0).max())
+
+
+def folded(motion: Motion, angles: Array) -> bool:
+    """Tell whether a joint, whose angles (m, N) [rad] are given, folded in the course of a motion.
+
+    It did where it came within `FOLDED` of pi at a sample, or between two samples on the shortest
+    way, as seen from the inner link. In a plane that is the way over pi where the angles to either
+    side add up to more than half a turn.
+    """
+    if (angles > np.pi - FOLDED).any():
+        return True
+    sample, joint = np.nonzero(angles[:-1] + angles[1:] > np.pi)
+    (inner, first), (later, second) = (_tangents(motion, k, joint) for k in (sample, sample + 1))
+    start, end = _product(inner, first), _product(later, second)
+    across = _carried(first - start[:, None] * inner, inner, later)
+    change = second - end[:, None] * later - across
+    square = np.maximum(_product(change, change), np.finfo(float).tiny)
+    # Where the chord between both directions passes the line of the inner link.
+    part = np.clip(-_product(across, change) / square, 0.0, 1.0)
+    aside = np.linalg.norm(across + part[:, None] * change, axis=1)
+    return bool((np.arctan2(aside, -(start + part * (end - start))) < FOLDED).any())
+
+
+def _tangents(motion: Motion, sample: Any, joint: Any) -> tuple[Array, Array]:
+    """Return the unit vectors (k, 3) along the links before and behind joints (k,) at samples (k,).
+
+    They are seen from a frame that turns with the motion.
+    """
+    nodes, angle = motion.nodes, motion.rotation_angle[sample]
+    links = [nodes[sample, joint] - nodes[sample, joint - 1]]
+    links[0][joint == 0] = [0.0, 0.0, 1.0]
+    links += [nodes[sample, joint + 1] - nodes[sample, joint]]
+    cosine, sine = np.cos(angle), np.sin(angle)
+    x, y, z = np.moveaxis(np.stack(links), 2, 0)
+    turned = np.stack([cosine * x + sine * y, cosine * y - sine * x, z], axis=2)
+    inner, outer = turned / np.linalg.norm(turned, axis=2, keepdims=True)
+    return inner, outer
+
+
+def _carried(vectors: Array, start: Array, end: Array) -> Array:
+    """Return vectors across unit vectors `start`, turned as these turn to `end` the shortest way.
+
+    Between opposite ones no way is the shortest, and the vectors stay.
+    """
+    lever = 1.0 + _product(start, end)
+    share = np.divide(_product(end, vectors), lever, out=np.zeros_like(lever), where=lever > 0.0)
+    return vectors - share[:, None] * (start + end)
+
+
+def _product(a: Array, b: Array) -> Array:
+    return np.asarray((a * b).sum(axis=1))

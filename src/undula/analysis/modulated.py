@@ -9,7 +9,7 @@ import numpy as np
 
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, UnresolvedError, follow_branch
-from undula.analysis.flapping import INTERVALS, flapping_unknowns, in_space
+from undula.analysis.flapping import INTERVALS, METHOD, flapping_unknowns, in_space
 from undula.analysis.modulated_state import Modulated
 from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.run import Run
@@ -150,7 +150,7 @@ def _null_vector(problem: OrbitProblem, u: Array, p: float) -> Array:
 
 def _shooting(model: Model, parameter: str) -> Shooting:
     def rotate(y: Array, angle: float) -> Array:
-        turned = y.reshape(-1, 4).copy()
+        turned = y.reshape(-1, model.equations.stride).copy()
         cosine, sine = np.cos(angle), np.sin(angle)
         turned[:, :2] = turned[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
         return turned.ravel()
@@ -163,6 +163,7 @@ def _shooting(model: Model, parameter: str) -> Shooting:
         equations_at=lambda p: changed(model, parameter, p).equations,
         closure=Closure(rotation=Rotation(rotate, generator)),
         intervals=INTERVALS,
+        method=METHOD,
     )
 
 

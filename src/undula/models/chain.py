@@ -10,16 +10,17 @@ Lauga & Goldstein (2017).
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
-from undula.arrays import Links
+from undula.arrays import Array, Links
 from undula.errors import InputError, is_number
 from undula.models.linked_rod import LinkedRod
 from undula.models.loads import Load
-from undula.models.rod import FoldingPlanarRod, FoldingSpatialRod, Rod
+from undula.models.rod import FoldingPlanarRod, FoldingSpatialRod, Rod, WindingRod
 from undula.models.units import Units, chain_units
 
 MOST_LINKS = 1000
@@ -43,6 +44,10 @@ class Chain(LinkedRod):
         Drag coefficient of every bead, or of each one from the base on [zeta], positive.
     confined : bool
         Whether the chain is kept in the x-z plane.
+    spring : {"angle", "unwrapped"}
+        What a joint's energy K psi^2 / 2 takes for psi: the angle between its links, from 0 to pi,
+        or that angle followed continuously, beyond pi; the latter for confined chains. A start has
+        angles up to pi.
 
     Raises
     ------
@@ -56,6 +61,7 @@ class Chain(LinkedRod):
     base_spring: float = 1.0
     bead_drag: float | tuple[float, ...] = 1.0
     confined: bool = False
+    spring: Literal["angle", "unwrapped"] = "angle"
 
     def __post_init__(self) -> None:
         """Refuse values that make no chain."""
@@ -76,6 +82,13 @@ class Chain(LinkedRod):
             )
         if not isinstance(self.confined, bool):
             raise InputError(f"confined = {self.confined!r} has to be True or False")
+        if self.spring not in ("angle", "unwrapped"):
+            raise InputError(f"spring = {self.spring!r} has to be 'angle' or 'unwrapped'")
+        if self.spring == "unwrapped" and not self.confined:
+            raise InputError(
+                "spring = 'unwrapped' has no meaning in space, where no angle exceeds pi; use"
+                " confined = True or spring = 'angle'"
+            )
         if isinstance(self.bead_drag, Iterable) and not isinstance(self.bead_drag, str):
             object.__setattr__(self, "bead_drag", tuple(self.bead_drag))
         given = self.bead_drag if isinstance(self.bead_drag, tuple) else (self.bead_drag,)
@@ -95,7 +108,9 @@ class Chain(LinkedRod):
         joint[0] = self.base_spring
         weight: Links = np.ones(self.links) * self.bead_drag
         head, foot = self.load.shares(self.links)
-        rod = FoldingPlanarRod if self.confined else FoldingSpatialRod
+        rod: type[Rod] = FoldingPlanarRod if self.confined else FoldingSpatialRod
+        if self.spring == "unwrapped":
+            rod = WindingRod
         lag = 1.0 - 1.0 / self.drag_ratio
         return rod(joint, weight, head, foot, 1.0 / self.links, lag, math.inf)
 
@@ -103,3 +118,9 @@ class Chain(LinkedRod):
     def units(self) -> Units:
         """Names of the units of its numbers."""
         return chain_units(self.links)
+
+    def linearised(self) -> tuple[Array, Array]:
+        """Return stiffness and drag (N, N) of small displacements, the same for either spring."""
+        if self.spring == "unwrapped":
+            return replace(self, spring="angle").linearised()
+        return super().linearised()

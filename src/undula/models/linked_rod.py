@@ -11,7 +11,7 @@ from undula.arrays import Array, Nodes, State
 from undula.errors import InputError
 from undula.models.loads import DensityLoad
 from undula.models.model import Energetics
-from undula.models.rod import PlanarRod, SpatialRod
+from undula.models.rod import PlanarRod, SpatialRod, WindingRod
 from undula.models.rod_flow import RodFlow
 from undula.models.rod_velocity import observe, rate_of_change
 from undula.numerics.banded import to_dense
@@ -38,6 +38,15 @@ class LinkedRod(ABC):
         return int(self.system.dimension)
 
     @property
+    def _stride(self) -> int:
+        return self.equations.stride
+
+    @property
+    def winds(self) -> bool:
+        """Whether joints wind up beyond pi, instead of folding there."""
+        return isinstance(self.system, WindingRod)
+
+    @property
     def size(self) -> int:
         """Number of entries of a state."""
         return self.links * self.dimension
@@ -45,9 +54,7 @@ class LinkedRod(ABC):
     @cached_property
     def position_mask(self) -> Array:
         """1 at the positions, 0 at the multipliers of the integrator's vector."""
-        mask = np.ones((self.links, self.dimension + 1))
-        mask[:, -1] = 0.0
-        return mask.ravel()
+        return np.asarray(self.equations.differential, dtype=float)
 
     @cached_property
     def equations(self) -> RodFlow:
@@ -56,8 +63,8 @@ class LinkedRod(ABC):
 
     def positions(self, unknowns: Array) -> State:
         """Return the state in the integrator's vector; further axes in front are kept."""
-        by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self.dimension + 1)
-        return by_node[..., :-1].reshape(*unknowns.shape[:-1], self.size)
+        by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self._stride)
+        return by_node[..., : self.dimension].reshape(*unknowns.shape[:-1], self.size)
 
     def unknowns(self, x: State) -> Array:
         """Return the integrator's vector: positions and the multipliers that belong to them."""
@@ -100,8 +107,8 @@ class LinkedRod(ABC):
 
     def _moving(self, x: State) -> tuple[Array, Array]:
         """Return the integrator's vector at x and its rates of change."""
-        y = np.zeros((self.links, self.dimension + 1))
-        y[:, :-1] = np.asarray(x, dtype=float).reshape(self.links, self.dimension)
+        y = np.zeros((self.links, self._stride))
+        y[:, : self.dimension] = np.asarray(x, dtype=float).reshape(self.links, self.dimension)
         unknowns, velocity = y.ravel(), np.zeros(y.size + RATES)
         rate_of_change(self.system, unknowns, velocity)
         return unknowns, velocity
@@ -110,13 +117,14 @@ class LinkedRod(ABC):
         """Return d rhs / dx, shape (size, size), from those of R v = f and of the constraint."""
         y, v = self._moving(x)
         v = v[:-RATES]
-        d, m = self.dimension, self.dimension + 1
+        d, m = self.dimension, self._stride
         moving = self.equations.differential
+        lengths = np.arange(y.size) % m == d
         change, drag = (to_dense(band) for band in self.equations.parts(y, v, 0.0))
         implicit, right = np.where(moving, drag, change), -change[:, moving]
         if not self.system.extensible:
-            implicit[np.ix_(~moving, moving)] = change[np.ix_(~moving, moving)]
-            right[~moving] = -self._tangent_change(v, d, m)[:, moving]
+            implicit[np.ix_(lengths, moving)] = change[np.ix_(lengths, moving)]
+            right[lengths] = -self._tangent_change(v, d, m)[:, moving]
         return np.asarray(np.linalg.solve(implicit, right)[moving])
 
     def _tangent_change(self, v: Array, d: int, m: int) -> Array:
@@ -137,10 +145,26 @@ class LinkedRod(ABC):
         """
         y = self._moving(self.straight())[0]
         stiffness, drag = self.equations.parts(y, np.zeros(y.size), 0.0)
-        m = self.dimension + 1
+        m = self._stride
         # Every m-th row and column belongs to the same direction; none else matters to it.
         across = slice(m - 1, None, m)
         return to_dense(stiffness[::m, across]), to_dense(drag[::m, across])
+
+    def joint_angles(self, unknowns: Array) -> Array:
+        """Return the angles between neighbouring links (..., N) [rad], the clamp's axis the first.
+
+        They are the angles in the integrator's vector (..., n), with their signs and full turns, if
+        joints wind up, and else between 0 and pi.
+        """
+        by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self._stride)
+        if self.winds:
+            return by_node[..., -1]
+        links = np.diff(by_node[..., : self.dimension], axis=-2, prepend=0.0)
+        outer = links / np.linalg.norm(links, axis=-1, keepdims=True)
+        clamp = np.broadcast_to(np.eye(self.dimension)[-1], outer[..., :1, :].shape)
+        inner = np.concatenate([clamp, outer[..., :-1, :]], axis=-2)
+        apart, together = (np.linalg.norm(outer + s * inner, axis=-1) for s in (-1.0, 1.0))
+        return np.asarray(2.0 * np.arctan2(apart, together))
 
     def departure(self, x: State) -> float:
         """Return the root mean square difference of the tangents from straight [rad]."""

@@ -64,6 +64,16 @@ class Model(Protocol):
     def positions(self, unknowns: Array) -> State:
         """Return the state in the integrator's vector; further axes in front are kept."""
 
+    def joint_angles(self, unknowns: Array) -> Array:
+        """Return the angles between neighbouring links (..., links) of integrator's vectors [rad].
+
+        The clamp's axis is before the first. With their signs and full turns if joints wind up.
+        """
+
+    @property
+    def winds(self) -> bool:
+        """Whether joints wind up beyond pi, instead of folding there."""
+
     @property
     def position_mask(self) -> Array:
         """1 at the positions, 0 at the multipliers of the integrator's vector."""

@@ -11,7 +11,8 @@ T_j. Extensible links: t = e / |e|, l = |e|, and T_j + S_j / l_j = EA (l_j / h -
 K_{j-1} g (1 - c_j) + K_j g (1 - c_{j+1}) turns the multiplier into the tension (rigid links absorb
 it). In code node i and link i count from 0; `joint[i]` sits at the foot of link i.
 
-The vector y interleaves (x_i, T_i) node by node: 4 numbers in space, 3 in a plane.
+The vector y interleaves (x_i, T_i) node by node: 4 numbers in space, 3 in a plane. Links that wind
+have the angle psi at the foot of link i for a fourth (see `undula.models.winding`).
 Source: the discrete Kirchhoff rod of Ling, Guo & Kanso (2018), with half-cell ends; docs/theory.
 """
 
@@ -21,7 +22,11 @@ from undula.arrays import Links
 
 
 class Tables(NamedTuple):
-    """The numbers that make a linked rod what it is; arrays of shape (N,)."""
+    """The numbers that make a linked rod what it is; arrays of shape (N,).
+
+    Each kind of rod adds the `dimension`, which is the number of coordinates of a node, and the
+    `stride`, which is that of its entries in y, coordinates first.
+    """
 
     joint: Links  # K: stiffness of the joint at the foot of each link
     weight: Links  # w: drag weight of each node
@@ -36,6 +41,7 @@ class SpatialRod(Tables):
     """Rigid links in space."""
 
     dimension: ClassVar = 3
+    stride: ClassVar = 4
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 8
     derivative_half_bandwidth: ClassVar = 11
@@ -45,6 +51,7 @@ class PlanarRod(Tables):
     """Rigid links in a plane that holds the axis."""
 
     dimension: ClassVar = 2
+    stride: ClassVar = 3
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 6
     derivative_half_bandwidth: ClassVar = 8
@@ -54,6 +61,7 @@ class FoldingSpatialRod(Tables):
     """Rigid links in space that bend so sharply at joints that Newton's method wants all terms."""
 
     dimension: ClassVar = 3
+    stride: ClassVar = 4
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 11
 
@@ -62,14 +70,25 @@ class FoldingPlanarRod(Tables):
     """Such links in a plane that holds the axis."""
 
     dimension: ClassVar = 2
+    stride: ClassVar = 3
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 8
+
+
+class WindingRod(Tables):
+    """Rigid links in a plane whose joints wind up beyond pi instead of folding."""
+
+    dimension: ClassVar = 2
+    stride: ClassVar = 4
+    extensible: ClassVar = False
+    half_bandwidth: ClassVar = 11
 
 
 class ExtensibleSpatialRod(Tables):
     """Extensible links in space."""
 
     dimension: ClassVar = 3
+    stride: ClassVar = 4
     extensible: ClassVar = True
     half_bandwidth: ClassVar = 11
 
@@ -78,6 +97,7 @@ class ExtensiblePlanarRod(Tables):
     """Extensible links in a plane that holds the axis."""
 
     dimension: ClassVar = 2
+    stride: ClassVar = 3
     extensible: ClassVar = True
     half_bandwidth: ClassVar = 8
 
@@ -89,6 +109,7 @@ RODS = (
     FoldingPlanarRod,
     ExtensibleSpatialRod,
     ExtensiblePlanarRod,
+    WindingRod,
 )
 Rod = (
     SpatialRod
@@ -97,4 +118,5 @@ Rod = (
     | FoldingPlanarRod
     | ExtensibleSpatialRod
     | ExtensiblePlanarRod
+    | WindingRod
 )

@@ -21,9 +21,9 @@ from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tang
 
 
 @cache
-def drag_block_kernel(dimension: int) -> Callable[..., Any]:
+def drag_block_kernel(rod: Any) -> Callable[..., Any]:
     """Return `drag_block(system, t, w, i, mean, block)`: d (R_i w_i) / dt_i, as for t_{i+1}."""
-    d, m = dimension, dimension + 1
+    d, m = rod.dimension, rod.stride
     mean_tangent = mean_tangent_kernel(d)
 
     @kernel
@@ -41,9 +41,9 @@ def drag_block_kernel(dimension: int) -> Callable[..., Any]:
 
 
 @cache
-def link_blocks_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
+def link_blocks_kernel(rod: Any) -> Callable[..., Any]:
     """Return `link_blocks(system, y, t, l, blocks)`: blocks[i, s] = dq_i / de_{i-1+s}."""
-    d, m = dimension, dimension + 1
+    d, m, extensible = rod.dimension, rod.stride, rod.extensible
     cosine = cosine_kernel(d)
 
     @kernel
@@ -105,12 +105,11 @@ def link_blocks_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
 
 
 @cache
-def derivative_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
-    """Return `derivative(system, y, w, c, turn, band)`, exact, half-bandwidth 3 d + 2."""
-    d, m = dimension, dimension + 1
+def derivative_kernel(rod: Any, link_blocks: Callable[..., Any]) -> Callable[..., Any]:
+    """Return `derivative(system, y, w, c, turn, band)`, exact, half-bandwidth 3 m - 1."""
+    d, m, extensible = rod.dimension, rod.stride, rod.extensible
     half = 3 * m - 1
-    tangents, cosine = tangents_kernel(d, extensible), cosine_kernel(d)
-    drag_block, link_blocks = drag_block_kernel(d), link_blocks_kernel(d, extensible)
+    tangents, cosine, drag_block = tangents_kernel(rod), cosine_kernel(d), drag_block_kernel(rod)
 
     @kernel
     def add(band: Any, i: Any, k: Any, n: Any, scale: Any, block: Any) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from undula.compiled import kernel
 from undula.models.joint import stiffening
-from undula.models.rod import RODS
+from undula.models.rod import RODS, WindingRod
 from undula.numerics.system import (
     constraint_error,
     generator,
@@ -23,9 +23,9 @@ from undula.numerics.system import (
 
 
 @cache
-def tangents_kernel(dimension: int, extensible: bool) -> Callable[..., Any]:
+def tangents_kernel(rod: Any) -> Callable[..., Any]:
     """Return `tangents(system, y, t, l)`: link tangents t (N, d) and lengths l (N,)."""
-    d, m = dimension, dimension + 1
+    d, m, extensible = rod.dimension, rod.stride, rod.extensible
 
     @kernel
     def tangents(system: Any, y: Any, t: Any, length: Any) -> None:
@@ -90,12 +90,12 @@ def moments_kernel(dimension: int) -> Callable[..., Any]:
 
 
 @cache
-def along_kernel(dimension: int) -> Callable[..., Any]:
+def along_kernel(rod: Any) -> Callable[..., Any]:
     """Return `along(t, u, i)`: s . u / |s|^2 at node i, so that m m . u = s (s . u) / |s|^2.
 
     s = t_i + t_{i+1} has the direction m of the drag, at the last node s = t_i.
     """
-    d, m = dimension, dimension + 1
+    d, m = rod.dimension, rod.stride
 
     @kernel
     def along(t: Any, u: Any, i: Any) -> Any:
@@ -129,10 +129,9 @@ def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
     return mean_tangent
 
 
-def _register(rod: Any) -> None:
-    d, m, extensible = rod.dimension, rod.dimension + 1, rod.extensible
-    tangents, moments = tangents_kernel(d, extensible), moments_kernel(d)
-    along = along_kernel(d)
+def _register_forces(rod: Any) -> None:
+    d, m, extensible = rod.dimension, rod.stride, rod.extensible
+    tangents, moments, along = tangents_kernel(rod), moments_kernel(d), along_kernel(rod)
 
     @implements(residual, rod)
     def rod_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
@@ -158,6 +157,24 @@ def _register(rod: Any) -> None:
             else:
                 out[m * i + d] = 0.5 * (square - 1.0)
 
+    if not extensible:
+
+        @implements(constraint_error, rod)
+        def rod_constraint_error(system: Any, y: Any) -> Any:
+            n, largest = system.joint.shape[0], 0.0
+            for i in range(n):
+                square = 0.0
+                for a in range(d):
+                    link = y[m * i + a] - (y[m * (i - 1) + a] if i > 0 else 0.0)
+                    square += link * link
+                largest = max(largest, abs(0.5 * (square * n * n - 1.0)))
+            return largest
+
+
+def _register_motion(rod: Any) -> None:
+    d, m = rod.dimension, rod.stride
+    tangents, along = tangents_kernel(rod), along_kernel(rod)
+
     @implements(weigh, rod)
     def rod_weigh(system: Any, y: Any, u: Any, out: Any) -> None:
         n = system.joint.shape[0]
@@ -168,7 +185,8 @@ def _register(rod: Any) -> None:
             for a in range(d):
                 direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
                 out[m * i + a] = system.weight[i] * (u[m * i + a] - lagging * direction)
-            out[m * i + d] = 0.0
+            for k in range(m * i + d, m * i + m):
+                out[k] = 0.0
 
     @implements(rates, rod)
     def rod_rates(system: Any, y: Any, v: Any, out: Any) -> None:
@@ -204,19 +222,6 @@ def _register(rod: Any) -> None:
                 total += change * change
         return math.sqrt(total * system.joint.shape[0])
 
-    if not extensible:
-
-        @implements(constraint_error, rod)
-        def rod_constraint_error(system: Any, y: Any) -> Any:
-            n, largest = system.joint.shape[0], 0.0
-            for i in range(n):
-                square = 0.0
-                for a in range(d):
-                    link = y[m * i + a] - (y[m * (i - 1) + a] if i > 0 else 0.0)
-                    square += link * link
-                largest = max(largest, abs(0.5 * (square * n * n - 1.0)))
-            return largest
-
     if d == 3:
 
         @implements(generator, rod)
@@ -240,4 +245,6 @@ def _register(rod: Any) -> None:
 
 
 for _rod in RODS:
-    _register(_rod)
+    _register_motion(_rod)
+    if _rod is not WindingRod:
+        _register_forces(_rod)

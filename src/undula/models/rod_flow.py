@@ -39,16 +39,18 @@ class RodFlow:
     @property
     def half_bandwidth(self) -> int:
         """Half-bandwidth of the matrices."""
-        return 3 * self._stride - 1
+        return 3 * self.stride - 1
 
     @property
-    def _stride(self) -> int:
-        return int(self.system.dimension) + 1
+    def stride(self) -> int:
+        """Entries of y that belong to a node: its coordinates, then its multipliers."""
+        return int(self.system.stride)
 
     @cached_property
     def differential(self) -> Any:
         """True at positions, False at multipliers, shape (n,)."""
-        return np.arange(self.system.joint.size * self._stride) % self._stride < self._stride - 1
+        entries = np.arange(self.system.joint.size * self.stride)
+        return entries % self.stride < self.system.dimension
 
     def residual(self, y: Array, w: Array) -> Array:
         """Return R(x) w - f(x, z) and g(x, z), shape (n,), for velocities w (n,)."""
@@ -72,9 +74,16 @@ class RodFlow:
         turning(self.system, y, out, dragged)
         return out, dragged
 
+    def mirrored(self, y: Array) -> Array:
+        """Return vectors (..., n) with x reflected, and with it the sense of angles that wind."""
+        signs = np.ones(self.stride)
+        signs[0] = -1.0
+        signs[self.system.dimension + 1 :] = -1.0
+        return np.asarray(y * np.tile(signs, self.system.joint.size))
+
     def displacements(self, y: Array) -> Array:
         """Return an orthonormal basis (n, k) of small displacements that keep rigid lengths."""
-        moves, d, m = self.differential, self._stride - 1, self._stride
+        moves, d, m = self.differential, int(self.system.dimension), self.stride
         if self.system.extensible:
             return np.eye(y.size)[:, moves]
         links = np.diff(y.reshape(-1, m)[:, :d], axis=0, prepend=0.0)

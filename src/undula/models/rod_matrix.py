@@ -17,15 +17,16 @@ import numpy as np
 
 from undula.compiled import entry
 from undula.models.joint import stiffening
-from undula.models.rod import GENTLE_RODS, RODS
-from undula.models.rod_derivative import derivative_kernel, drag_block_kernel
+from undula.models.rod import GENTLE_RODS, RODS, WindingRod
+from undula.models.rod_derivative import derivative_kernel, drag_block_kernel, link_blocks_kernel
 from undula.models.rod_equations import cosine_kernel, tangents_kernel
+from undula.models.winding_derivative import winding_derivative
 from undula.numerics.system import derivative, implements, matrix
 
 
 def _register_gentle(rod: Any) -> None:
-    d, m, half = rod.dimension, rod.dimension + 1, rod.half_bandwidth
-    tangents, cosine, drag_block = tangents_kernel(d, False), cosine_kernel(d), drag_block_kernel(d)
+    d, m, half = rod.dimension, rod.stride, rod.half_bandwidth
+    tangents, cosine, drag_block = tangents_kernel(rod), cosine_kernel(d), drag_block_kernel(rod)
 
     @implements(matrix, rod)
     def rod_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
@@ -80,7 +81,11 @@ def _register_gentle(rod: Any) -> None:
 
 
 for _rod in RODS:
-    _derivative: Any = derivative_kernel(_rod.dimension, _rod.extensible)
+    _derivative: Any = (
+        winding_derivative
+        if _rod is WindingRod
+        else derivative_kernel(_rod, link_blocks_kernel(_rod))
+    )
     implements(derivative, _rod)(_derivative.py_func)
     if _rod in GENTLE_RODS:
         _register_gentle(_rod)

@@ -13,8 +13,9 @@ import numpy as np
 
 from undula.compiled import entry, kernel
 from undula.models.joint import joint_energy, stiffening
-from undula.models.rod import RODS
+from undula.models.rod import RODS, WindingRod
 from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tangents_kernel
+from undula.models.winding import follow_angles, winding_energy
 from undula.numerics.system import generic, implements, rates, residual
 
 
@@ -48,9 +49,8 @@ def solve_tridiagonal(lower: Any, diagonal: Any, upper: Any, x: Any) -> None:
 
 
 def _register(rod: Any) -> None:
-    d, m, extensible = rod.dimension, rod.dimension + 1, rod.extensible
-    tangents, cosine = tangents_kernel(d, extensible), cosine_kernel(d)
-    mean_tangent = mean_tangent_kernel(d)
+    d, m, extensible = rod.dimension, rod.stride, rod.extensible
+    tangents, cosine, mean_tangent = tangents_kernel(rod), cosine_kernel(d), mean_tangent_kernel(d)
 
     @implements(find_velocity, rod)
     def rod_velocity(system: Any, y: Any, v: Any) -> None:
@@ -66,7 +66,8 @@ def _register(rod: Any) -> None:
             along *= system.lag / (1.0 - system.lag)  # gamma - 1
             for a in range(d):
                 v[m * i + a] = (force[m * i + a] + along * mean[a]) / system.weight[i]
-            v[m * i + d] = 0.0
+            for k in range(m * i + d, m * i + m):
+                v[k] = 0.0
 
     @kernel
     def mobility(system: Any, t: Any, mean: Any, p: Any, q: Any, i: Any) -> Any:
@@ -114,12 +115,24 @@ def _register(rod: Any) -> None:
             tension = system.tensile * (length[i] / system.link - 1.0)
             y[m * i + d] = tension - shortfall / length[i]
 
+    @kernel
+    def winding_multipliers(system: Any, y: Any) -> None:
+        follow_angles(system, y)
+        rigid_multipliers(system, y)
+
     rod_velocity_compiled = kernel(rod_velocity)
     compiled = extensible_multipliers if extensible else rigid_multipliers
+    if rod is WindingRod:
+        compiled = winding_multipliers
 
     @implements(find_multipliers, rod)
     def rod_multipliers(system: Any, y: Any) -> None:
         compiled(system, y)
+
+
+def _register_energy(rod: Any) -> None:
+    d, extensible = rod.dimension, rod.extensible
+    tangents = tangents_kernel(rod)
 
     @implements(elastic_energy, rod)
     def rod_energy(system: Any, y: Any) -> Any:
@@ -141,6 +154,9 @@ def _register(rod: Any) -> None:
 
 for _rod in RODS:
     _register(_rod)
+    if _rod is not WindingRod:
+        _register_energy(_rod)
+implements(elastic_energy, WindingRod)(winding_energy.py_func)
 
 
 @entry

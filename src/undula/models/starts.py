@@ -107,6 +107,34 @@ def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
     return _bent(model, amplitude * np.stack(at_links, axis=-1))
 
 
+def turned(model: Model, nodes: Nodes, amplitude: float, *, seed: int = 1) -> State:
+    """Return the shape with the given nodes, its links turned a little at random.
+
+    The turns are smooth: each link is turned as the axis is to become the tangent of a kicked start
+    of this amplitude and seed. So links keep their length, and a plane is not left.
+
+    Parameters
+    ----------
+    model : Model
+    nodes : ndarray, shape (N + 1, 3)
+        Of the model's own links.
+    amplitude : float
+        Largest angle of a turn [rad], above 0 and at most pi/2.
+    seed : int
+        Seed of the random numbers.
+    """
+    if not (is_number(amplitude) and 0.0 < amplitude <= 0.5 * np.pi):
+        raise InputError(f"amplitude = {amplitude!r} has to be a number in (0, pi/2]")
+    bend = np.diff(model.nodes(kicked(model, amplitude, seed=seed)), axis=0)
+    tangents = bend / np.linalg.norm(bend, axis=1, keepdims=True)
+    axis = np.cross([0.0, 0.0, 1.0], tangents)
+    links = np.diff(nodes, axis=0)
+    once = np.cross(axis, links)
+    # Rodrigues' formula with the sine in the axis; tangents are at most pi/2 from upright.
+    links = links + once + np.cross(axis, once) / (1.0 + tangents[:, 2:])
+    return model.from_nodes(np.concatenate([nodes[:1], np.cumsum(links, axis=0)]))
+
+
 def _link_midpoints(model: Model) -> Array:
     links = model.size // model.dimension
     return (np.arange(links) + 0.5) / links

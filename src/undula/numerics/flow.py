@@ -18,8 +18,8 @@ from undula.numerics.radau import Radau, interpolation, radau
 #: The derivative of a residual by a parameter, as a function of y (n,) and w (n,).
 ByParameter = Callable[[Array, Array], Array]
 
-#: Three stages, order 5.
-RADAU_5 = radau(3)
+#: Three stages, order 5, and five stages, order 9.
+RADAU_5, RADAU_9 = radau(3), radau(5)
 
 # An interval whose stages are not found is gone through in so many parts, which are cut themselves
 # if need be, so often.

@@ -57,6 +57,7 @@ def build_model(wanted: ModelInput) -> Model:
             base_spring=table.base_spring,
             bead_drag=table.bead_drag,
             confined=table.confined,
+            spring=table.spring,
         )
     return Filament(
         segments=table.segments,

@@ -52,6 +52,9 @@ class ModelTable(Table):
         Drag of every bead of a chain, or a list with that of each one from the base on, in zeta.
     confined
         Whether the motion is kept in one plane.
+    spring
+        What the energy of a chain's joint takes for its angle: ``"angle"``, from 0 to pi, or
+        ``"unwrapped"``, followed beyond pi, for a confined chain.
     """
 
     kind: Literal["filament", "chain"] = Field(
@@ -69,6 +72,9 @@ class ModelTable(Table):
         default=1.0, description="a number above 0, or a list with one for each bead"
     )
     confined: bool = Field(default=False, description="true or false")
+    spring: Literal["angle", "unwrapped"] = Field(
+        default="angle", description="'angle' or 'unwrapped'"
+    )
 
     only_with: ClassVar[Mapping[str, OnlyWith]] = {
         "segments": OnlyWith("kind", ("filament",)),
@@ -77,6 +83,7 @@ class ModelTable(Table):
         "tensile_stiffness": OnlyWith("inextensibility", ("weak",)),
         "base_spring": OnlyWith("kind", ("chain",)),
         "bead_drag": OnlyWith("kind", ("chain",)),
+        "spring": OnlyWith("kind", ("chain",)),
     }
 
     @model_validator(mode="before")
@@ -85,6 +92,15 @@ class ModelTable(Table):
         if isinstance(given, Mapping) and given.get("kind") == "chain":
             return {"drag_ratio": 1.0, **given}
         return given
+
+    @model_validator(mode="after")
+    def _unwrapped_angles_lie_in_a_plane(self) -> Self:
+        if self.spring == "unwrapped" and not self.confined:
+            raise conflict(
+                "model.spring = 'unwrapped' has no meaning in space, where no angle exceeds pi; use"
+                " model.confined = true or model.spring = 'angle'"
+            )
+        return self
 
     @model_validator(mode="after")
     def _every_bead_has_its_drag(self) -> Self:
