@@ -268,6 +268,28 @@ def test_a_zero_of_a_test_function_is_located(place: float) -> None:
     assert found.p == pytest.approx(cube(found.u[0]), abs=1e-13)
 
 
+def test_a_test_function_is_asked_for_once_at_each_point() -> None:
+    curve = cubic()
+    one, other = curve.at(-0.2, cube(-0.2)), curve.at(0.2, cube(0.2))
+    asked: list[float] = []
+
+    def fickle(point: Point) -> float:
+        asked.append(point.u[0])
+        # As of an exponent that round-off has spoilt: another sign when asked again.
+        return float(point.u[0]) * (-1.0) ** (asked.count(point.u[0]) - 1)
+
+    found = located(curve, one, other, fickle, 1.0, 1e-9)
+    assert found is not None
+    assert found.u[0] == pytest.approx(0.0, abs=1e-9)
+    assert len(asked) == len(set(asked))
+
+
+def test_a_test_function_without_a_value_has_no_zero() -> None:
+    curve = cubic()
+    one, other = curve.at(-0.2, cube(-0.2)), curve.at(0.2, cube(0.2))
+    assert located(curve, one, other, lambda _: np.nan, 1.0, 1e-9) is None
+
+
 def test_the_step_grows_where_it_is_easy_and_never_beyond_the_most() -> None:
     line = Curve(lambda u, p: u - p, lambda _u, _p: (1.0, -1.0))
     points = followed(line, line.at(0.0, 0.0), (0.0, 10.0), first=1e-3, most=0.7)

@@ -134,20 +134,33 @@ def test_a_flapping_that_still_grows_is_undecided() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sides", "angle"),
+    ("sides", "angle", "name"),
     [
-        (np.real(WAVE) + 0.15j * ARC**2 * np.sin(2 * np.pi * 6.0 * COLUMN - 2.0 * ARC), TURNING),
-        (spin(1.0 + 0.1 * ARC * np.cos(2.0 * np.pi * 3.3 * COLUMN)), TURNING),
-        (WAVE * np.exp(0.5j * COLUMN), 0.5 * TIME),
+        (
+            np.real(WAVE) + 0.15j * ARC**2 * np.sin(2 * np.pi * 6.0 * COLUMN - 2.0 * ARC),
+            TURNING,
+            "modulated spinning",
+        ),
+        (
+            np.real(WAVE) + 0.02j * ARC**2 * np.sin(2 * np.pi * 6.0 * COLUMN - 2.0 * ARC),
+            STILL,
+            "precessing flapping",
+        ),
+        (
+            spin(1.0 + 0.1 * ARC * np.cos(2.0 * np.pi * 13.3 * COLUMN)),
+            TURNING,
+            "modulated spinning",
+        ),
+        (WAVE * np.exp(0.5j * COLUMN), 0.5 * TIME, "precessing flapping"),
     ],
-    ids=["ellipse", "modulated rotation", "turning plane"],
+    ids=["ellipse", "narrow ellipse", "modulated rotation", "turning plane"],
 )
-def test_settled_motions_of_other_kinds_are_left_for_later(
-    sides: NDArray[np.complex128], angle: Array
+def test_settled_motions_that_are_neither_planar_nor_steady_have_names_of_their_own(
+    sides: NDArray[np.complex128], angle: Array, name: str
 ) -> None:
     found = judge(sides, angle)
-    assert found.name == "undecided"
-    assert "neither planar nor steady" in found.reason
+    assert found.name == name
+    assert found.margin > 1.0
 
 
 def test_a_small_motion_that_grows_exponentially_is_told_so_with_its_rate() -> None:

@@ -6,7 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from undula.analysis.harmonics import MAX_HARMONICS, HarmonicFit, fit_harmonics, harmonic_count
+from undula.analysis.harmonics import (
+    MAX_HARMONICS,
+    HarmonicFit,
+    fit_harmonics,
+    harmonic_count,
+    refined,
+)
 from undula.analysis.spectral import spectral_peak
 from undula.arrays import ComplexArray, Instants
 
@@ -119,12 +125,12 @@ def _with_error(time: Instants, signals: ComplexArray, fit: HarmonicFit) -> Freq
     everywhere, first, last = slice(None), slice(0, part), slice(-part, None)
     spread = 0.0
     for where, taper in ((everywhere, 2), (first, 1), (last, 1)):
-        other = fit_harmonics(
+        other = refined(
             time[where], signals[where], fit.frequency, harmonics=harmonics, taper=taper
         )
         if other is None:
             return None
-        spread = max(spread, abs(other.frequency - fit.frequency))
+        spread = max(spread, abs(other - fit.frequency))
     rounding = ROUND_OFF / float(time[-1] - time[0])
     error = SPREAD_FACTOR * spread + DEVIATIONS * fit.floor + rounding
     told = fit.misfit <= MAX_MISFIT and error <= MAX_RELATIVE_ERROR * fit.frequency

@@ -85,9 +85,21 @@ def fit_harmonics(
     HarmonicFit or None
         None when the refinement leaves the peak that it started on.
     """
+    found = refined(time, signals, frequency, harmonics=harmonics, taper=taper)
+    return None if found is None else _finished(time, signals, found, harmonics, taper)
+
+
+def refined(
+    time: Instants,
+    signals: ComplexArray,
+    frequency: float,
+    *,
+    harmonics: int,
+    taper: int = 1,
+) -> float | None:
+    """Return the frequency alone that `fit_harmonics` finds, which is quicker."""
     weights = hann(len(time), taper)
-    clock = time - 0.5 * (time[0] + time[-1])
-    span = float(time[-1] - time[0])
+    clock, span = _clock(time)
     start = frequency
     for _ in range(NEWTON_STEPS):
         step = _newton_step(clock, signals, weights, frequency, harmonics)
@@ -96,7 +108,12 @@ def fit_harmonics(
             return None
         if abs(step) * span <= NEWTON_TOLERANCE:
             break
-    return _finished(clock, signals, weights, frequency, harmonics)
+    return frequency
+
+
+def _clock(time: Instants) -> tuple[Instants, float]:
+    """Return times from the middle on, and the length of the window."""
+    return time - 0.5 * (time[0] + time[-1]), float(time[-1] - time[0])
 
 
 def _basis(clock: Instants, frequency: float, harmonics: int) -> ComplexArray:
@@ -163,12 +180,9 @@ def _weighted_square(values: ComplexArray, weights: Array) -> float:
 
 
 def _finished(
-    clock: Instants,
-    signals: ComplexArray,
-    weights: Array,
-    frequency: float,
-    harmonics: int,
+    time: Instants, signals: ComplexArray, frequency: float, harmonics: int, taper: int
 ) -> HarmonicFit:
+    weights, clock = hann(len(time), taper), _clock(time)[0]
     onto = _Projection.of(_basis(clock, frequency, harmonics), weights)
     coefficients, left = onto.fit(signals)
     size = _weighted_square(signals - np.sum(weights[:, None] * signals, axis=0), weights)

@@ -95,8 +95,10 @@ def power_balance_error(motion: Motion) -> float:
 
 def length_error(nodes: Shapes) -> float:
     """Return the largest relative deviation of a link's length from 1/N."""
-    lengths = np.linalg.norm(np.diff(nodes, axis=1), axis=2)
-    return float(np.abs(lengths * lengths.shape[1] - 1.0).max())
+    links = np.diff(nodes, axis=1)
+    square = np.einsum("kna,kna->kn", links, links)
+    extremes = np.sqrt([square.min(), square.max()])
+    return float(np.abs(extremes * links.shape[1] - 1.0).max())
 
 
 def folded(motion: Motion, angles: Array) -> bool:
@@ -106,6 +108,8 @@ def folded(motion: Motion, angles: Array) -> bool:
     way, as seen from the inner link. In a plane that is the way over pi where the angles to either
     side add up to more than half a turn.
     """
+    if angles.max() <= 0.5 * np.pi:
+        return False  # as of most motions
     if (angles > np.pi - FOLDED).any():
         return True
     sample, joint = np.nonzero(angles[:-1] + angles[1:] > np.pi)

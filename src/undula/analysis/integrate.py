@@ -98,7 +98,7 @@ def carry_on(
     due = FIRST_ASKED
     while due <= simulation.watch.seen:
         due *= 2
-    with _interruptible() as interrupted:
+    with interruptible() as interrupted:
         while simulation.advance():
             seconds = time.monotonic() - begun
             if interrupted():
@@ -136,7 +136,7 @@ def _progress(simulation: Simulation, seconds: float) -> Progress:
 
 
 @contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
+def interruptible() -> Iterator[Callable[[], bool]]:
     """Note SIGINT instead of raising KeyboardInterrupt amid a step; a second one does raise."""
     if threading.current_thread() is not threading.main_thread():
         yield lambda: False

@@ -5,7 +5,13 @@ from enum import Enum
 
 from undula.analysis.lyapunov import Lyapunov, lyapunov
 from undula.analysis.motion import Motion
-from undula.analysis.regimes import UNDECIDED, Verdict, first_verdict, settle_irregular
+from undula.analysis.regimes import (
+    UNDECIDED,
+    Verdict,
+    first_verdict,
+    settle_irregular,
+    straight_verdict,
+)
 from undula.analysis.schedule import Schedule
 from undula.analysis.settling import Settled
 from undula.errors import InputError
@@ -59,9 +65,9 @@ def judge(
     """
     whole, close = motions
     since = settled.since if settled else None
-    verdict, motion = _verdict(whole, since), whole
-    if verdict.name != "straight" and close is not None:
-        verdict, motion = _verdict(close, since), close
+    straight = None if close is None else straight_verdict(whole.time, whole.nodes)
+    motion = whole if close is None or straight is not None else close
+    verdict = straight or _verdict(motion, since)
     irregular = verdict.late is not None and exponents is Exponents.IF_IRREGULAR
     if not irregular and exponents is not Exponents.ALWAYS:
         return Judged(verdict, motion, None)

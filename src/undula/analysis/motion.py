@@ -1,11 +1,56 @@
 """A trajectory at equally spaced times: nodes, rotation, energies and powers."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Self
+
+import numpy as np
 
 from undula.arrays import Array, Instants, Shapes
 from undula.models.model import Energetics, Model
 from undula.numerics.system import RATES
+
+
+@dataclass(frozen=True)
+class Observed:
+    """Energies and powers of rows of a simulation, each (m,).
+
+    The powers take a solution for the velocities at every sample, which is ten times what the
+    energies cost. Few ask for them; so they are computed when somebody does.
+    """
+
+    model: Model
+    unknowns: Array
+    bending_energy: Array
+    stretching_energy: Array
+
+    @classmethod
+    def of(cls, model: Model, unknowns: Array) -> Self:
+        """Return those of unknowns (m, n)."""
+        return cls(model, unknowns, *model.energies(unknowns))
+
+    @cached_property
+    def _all(self) -> Energetics:
+        return self.model.observe(self.unknowns)
+
+    @property
+    def active_power(self) -> Array:
+        """Rate of work of the load."""
+        return self._all.active_power
+
+    @property
+    def dissipation(self) -> Array:
+        """Rate of work against drag."""
+        return self._all.dissipation
+
+    def part(self, chosen: slice) -> Self:
+        """Return those of some of the samples."""
+        return type(self)(
+            self.model,
+            self.unknowns[chosen],
+            self.bending_energy[chosen],
+            self.stretching_energy[chosen],
+        )
 
 
 @dataclass(frozen=True)
@@ -22,7 +67,7 @@ class Motion:
         Integral of the rate of turning about the axis [rad].
     work, loss : ndarray, shape (m,)
         Energy put in by the load and dissipated by drag since the start [B/L].
-    energetics : Energetics
+    energetics : Energetics or Observed
         Energies and powers, each (m,).
     """
 
@@ -31,7 +76,7 @@ class Motion:
     rotation_angle: Instants
     work: Instants
     loss: Instants
-    energetics: Energetics
+    energetics: Energetics | Observed
 
     @classmethod
     def of(cls, model: Model, time: Instants, states: Array) -> Self:
@@ -39,17 +84,16 @@ class Motion:
         unknowns, integrals = states[:, :-RATES], states[:, -RATES:]
         nodes = model.nodes(model.positions(unknowns))
         angle, work, loss = integrals.T
-        return cls(time, nodes, angle, work, loss, model.observe(unknowns))
+        return cls(time, nodes, angle, work, loss, Observed.of(model, unknowns))
 
     def late(self, start: float) -> Self:
         """Return the part of the motion from a time on, whatever round-off says about its edge."""
-        part = self.time >= start - 1e-9 * abs(start)
-        energetics = (getattr(self.energetics, field.name)[part] for field in fields(Energetics))
+        part = slice(int(np.searchsorted(self.time, start - 1e-9 * abs(start))), None)
         return type(self)(
             self.time[part],
             self.nodes[part],
             self.rotation_angle[part],
             self.work[part],
             self.loss[part],
-            Energetics(*energetics),
+            self.energetics.part(part),
         )

@@ -10,7 +10,7 @@ import numpy as np
 
 from undula.analysis.planes import in_plane, plane_angle
 from undula.analysis.spectral import hann
-from undula.arrays import Instants, Shapes
+from undula.arrays import Array, Instants, Shapes
 
 # In a violent flapping (tip force 300) the harmonics beyond the eighth are below one per cent.
 MAX_HARMONICS = 8
@@ -44,11 +44,30 @@ def misfit(time: Instants, nodes: Shapes, frequency: float) -> float:
     weights = hann(len(time))[:, None]
     signals = signals - np.sum(weights * signals, axis=0)
     orders = _resolved_orders(len(time), frequency * float(time[1] - time[0]))
-    basis = np.exp(2j * np.pi * frequency * np.outer(time - np.mean(time), orders))
-    dual = (weights * basis).conj().T
-    left = signals - basis @ np.linalg.solve(dual @ basis, dual @ signals)
-    size = float(np.sum(weights * signals**2))
-    return float(np.sqrt(np.sum(weights * np.abs(left) ** 2) / size)) if size > 0.0 else 1.0
+    basis = _basis(time, frequency, orders)
+    weighted, n = (weights * basis).T, len(orders)
+    gram, sums = weighted @ basis, weighted @ signals
+    coefficients = np.linalg.solve(
+        gram[:n, :n] + gram[n:, n:] + 1j * (gram[:n, n:] - gram[n:, :n]),
+        sums[:n] - 1j * sums[n:],
+    )
+    real, imaginary = coefficients.real, coefficients.imag
+    left = signals - basis @ np.concatenate([real, -imaginary])
+    beside = basis @ np.concatenate([imaginary, real])
+    size, rest = np.sum(weights * signals**2), np.sum(weights * (left**2 + beside**2))
+    return float(np.sqrt(rest / size)) if size > 0.0 else 1.0
+
+
+def _basis(time: Instants, frequency: float, orders: list[int]) -> Array:
+    """Real parts of exp(2 pi i k f t) for all orders k, then the imaginary ones: (m, 2 orders).
+
+    One exponential a sample and its powers are much quicker than one for each order, and products
+    of real numbers than those of complex ones.
+    """
+    once = np.exp(2j * np.pi * frequency * (time - np.mean(time)))[:, None]
+    powers = np.cumprod(np.broadcast_to(once, (len(time), MAX_HARMONICS)), axis=1)
+    powers = np.concatenate([np.ones_like(once), powers], axis=1)[:, np.abs(orders)]
+    return np.concatenate([powers.real, np.sign(orders) * powers.imag], axis=1)
 
 
 def _resolved_orders(samples: int, cycles_per_sample: float) -> list[int]:

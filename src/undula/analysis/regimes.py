@@ -110,13 +110,9 @@ def first_verdict(
     Verdict
         For any finite data, however short or odd.
     """
-    if not np.any(displacement(nodes) > UNMOVED):
-        return Verdict("straight", "the filament has not moved", {}, _first(time), margin=MOST)
-    if len(time) < MIN_SAMPLES:
-        return _too_few(time)
-    fall = straightening(time, nodes)
-    if fall.complete:
-        return _straight(fall, float(time[fall.start]))
+    fall = _fall(time, nodes)
+    if isinstance(fall, Verdict):
+        return fall
     undecided: Verdict | None = None
     for start in _windows(time, nodes, bending_energy, settled_from):
         part = slice(start, None)
@@ -131,6 +127,12 @@ def first_verdict(
         if not seen.transient:
             break
     return undecided or _too_few(time)
+
+
+def straight_verdict(time: Instants, nodes: Shapes) -> Verdict | None:
+    """Return the verdict of `first_verdict` if that is straight, and else None: this is quick."""
+    fall = _fall(time, nodes)
+    return fall if isinstance(fall, Verdict) and fall.name == "straight" else None
 
 
 def settle_irregular(verdict: Verdict, exponents: Lyapunov) -> Verdict:
@@ -153,6 +155,16 @@ def settle_irregular(verdict: Verdict, exponents: Lyapunov) -> Verdict:
     return replace(
         verdict, name=name.name, reason=reason, evidence=evidence, margin=min(MOST, name.margin)
     )
+
+
+def _fall(time: Instants, nodes: Shapes) -> Straightening | Verdict:
+    """Return how the displacement falls, or the verdict if no more has to be looked at."""
+    if not np.any(displacement(nodes) > UNMOVED):
+        return Verdict("straight", "the filament has not moved", {}, _first(time), margin=MOST)
+    if len(time) < MIN_SAMPLES:
+        return _too_few(time)
+    fall = straightening(time, nodes)
+    return _straight(fall, float(time[fall.start])) if fall.complete else fall
 
 
 def _first(time: Instants) -> float:

@@ -10,7 +10,6 @@ from undula.analysis.frequency import (
     Frequency,
     rotation_frequency,
     shape_frequency,
-    whole_motion_frequency,
 )
 from undula.analysis.health import Health, health_of
 from undula.analysis.judging import Exponents, Judged, judge
@@ -106,7 +105,11 @@ class Run:
     @cached_property
     def frequency(self) -> Frequency | None:
         """Frequency of the whole motion seen from the lab [cycles/T]; None for a straight one."""
-        return self._unless_straight(whole_motion_frequency(self.window.time, self.window.nodes))
+        found = self.verdict.evidence
+        # The verdict has looked for it in the same window.
+        if "frequency" not in found:
+            return None
+        return self._unless_straight(Frequency(found["frequency"], found["frequency_error"]))
 
     @cached_property
     def rotation_frequency(self) -> Frequency | None:

@@ -101,8 +101,9 @@ class Simulation:
     @property
     def states(self) -> Array:
         """The samples, shape (m, n + RATES)."""
-        width = self.memory.differences.shape[1]
-        self.rows = [np.concatenate([np.zeros((0, width)), *self.rows])]
+        if len(self.rows) != 1:
+            width = self.memory.differences.shape[1]
+            self.rows = [np.concatenate([np.zeros((0, width)), *self.rows])]
         return self.rows[0]
 
     def advance(self) -> bool:

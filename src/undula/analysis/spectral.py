@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from undula.arrays import Array, ComplexArray, Instants
@@ -10,10 +12,16 @@ from undula.arrays import Array, ComplexArray, Instants
 PADDING = 4
 
 
+@lru_cache(maxsize=8)
 def hann(count: int, power: int = 1) -> Array:
-    """Hann weight raised to a power at the middles of ``count`` equal cells, with sum 1."""
+    """Hann weight raised to a power at the middles of ``count`` equal cells, with sum 1.
+
+    A run asks for the same few again and again; they are remembered and cannot be written to.
+    """
     weights = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** (2 * power)
-    return np.asarray(weights / np.sum(weights), dtype=np.float64)
+    weights = np.asarray(weights / np.sum(weights), dtype=np.float64)
+    weights.setflags(write=False)
+    return weights
 
 
 def spectral_peak(time: Instants, signals: ComplexArray) -> float:

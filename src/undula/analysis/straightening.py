@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,14 +38,20 @@ class Straightening:
         The same over the later half of the time from the peak to the end (or to 1e-4 of the peak).
     start
         First sample of that later half.
-    motion
-        The linear motion fitted there; None when there are too few samples.
+    time, nodes
+        Times [T] and nodes [L] of that later half.
     """
 
     factor: float
     late_factor: float
     start: int
-    motion: LinearMotion | None
+    time: Instants
+    nodes: Shapes
+
+    @cached_property
+    def motion(self) -> LinearMotion | None:
+        """The linear motion fitted to the later half; None when there are too few samples."""
+        return linear_motion(self.time, self.nodes) if len(self.time) >= MIN_SAMPLES else None
 
     @property
     def vanished(self) -> bool:
@@ -54,10 +61,11 @@ class Straightening:
     @property
     def falling(self) -> bool:
         """Whether the later half falls, and as one exponential would."""
+        if self.late_factor < FALLING_FACTOR:
+            return False
         motion = self.motion
         return (
             motion is not None
-            and self.late_factor >= FALLING_FACTOR
             and motion.rate < 0.0
             and motion.rate_error <= RATE_AGREEMENT * abs(motion.rate)
         )
@@ -94,7 +102,8 @@ def straightening(time: Instants, nodes: Shapes) -> Straightening:
         factor=_ratio(ahead[peak], ahead[end]),
         late_factor=_ratio(ahead[start], ahead[stop - 1]) if start < stop else 1.0,
         start=min(start, len(time) - 1),
-        motion=linear_motion(time[late], nodes[late]) if stop - start >= MIN_SAMPLES else None,
+        time=time[late],
+        nodes=nodes[late],
     )
 
 

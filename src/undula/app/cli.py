@@ -8,8 +8,18 @@ from typing import Annotated
 
 import typer
 
-from undula.app.options import Budget, Changes, Input, Json, NoMovie, Overwrite, Result
+from undula.app.options import (
+    Budget,
+    Changes,
+    Input,
+    Json,
+    NoMovie,
+    Overwrite,
+    Result,
+    seconds_of,
+)
 from undula.app.questions import find, follow, stability, threshold
+from undula.app.studying import status, sweep
 from undula.errors import InputError
 
 # Matrices here are small: a second thread of the linear algebra makes them slower, not faster.
@@ -69,7 +79,7 @@ def undula(
     """Elastic microfilaments in viscous fluid under follower forces: run, judge and draw them."""
 
 
-for _command in (stability, find, follow, threshold):
+for _command in (stability, find, follow, threshold, sweep, status):
     app.command()(_command)
 
 
@@ -94,7 +104,7 @@ def run(
     from undula.studies.spec import read_input
     from undula.studies.whole_file import claim_output
 
-    wanted, seconds = read_input(file, changes or ()), _seconds(budget)
+    wanted, seconds = read_input(file, changes or ()), seconds_of(budget)
     result = (out or Path("results") / (file.stem if file else "run")) / "run.nc"
     claim_output(result, overwrite=overwrite)
     job = begin(wanted, result)
@@ -119,7 +129,7 @@ def resume(
     from undula.app.jobs import take_up
     from undula.studies.whole_file import claim_output
 
-    seconds = _seconds(budget)
+    seconds = seconds_of(budget)
     job = take_up(result, until)
     claim_output(result, overwrite=True)
     return finish(job, budget=seconds, with_movie=not no_movie, as_json=as_json)
@@ -127,19 +137,42 @@ def resume(
 
 @app.command()
 def plot(
-    result: Result,
+    result: Annotated[
+        Path, typer.Argument(metavar="RESULT", help="What undula run or undula sweep wrote.")
+    ],
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Figure: .png, .pdf or .svg.", show_default=False),
+        typer.Option(
+            metavar="FILE",
+            help="Figure: .png, .pdf or .svg; .html for a page of a study.",
+            show_default=False,
+        ),
     ] = None,
+    view: Annotated[
+        str, typer.Option(help="Of a study: diagram, gallery, paths or basins.")
+    ] = "diagram",
+    at: Annotated[
+        list[str] | None,
+        typer.Option("--at", metavar="KEY=VALUE", help="Of a study: a value of one of its axes."),
+    ] = None,
+    borders: Annotated[
+        bool, typer.Option("--borders", help="Of a study: solve for borders, and compare.")
+    ] = False,
     overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> int:
-    """Draw the figure of a stored run, by default beside it as .png."""
+    """Draw a stored run or a study of many runs, by default beside it as .png."""
+    if result.is_dir():
+        from undula.app.diagrams import Asked, plot_study
+
+        return plot_study(result, Asked(view, out, at or (), borders, overwrite), as_json=as_json)
     from undula.app.answers import DONE, reply
     from undula.app.drawing import draw_figure, figure_path
     from undula.studies.store import load_result
 
+    for option, given in (("--view", view != "diagram"), ("--at", at), ("--borders", borders)):
+        if given:
+            raise InputError(f"{option} is about studies, and {result} is none; leave it out")
     path = figure_path(result, out)
     draw_figure(load_result(result), path, overwrite=overwrite or out is None)
     reply({"status": "done", "figure": str(path)}, str(path), as_json=as_json)
@@ -195,7 +228,7 @@ def step(
     """
     from undula.app.stepping import Job, plan, step_along
 
-    seconds = _seconds(budget)
+    seconds = seconds_of(budget)
     series = plan(file, changes or (), along, back=down, kick=kick, seed=seed)
     result = (out or Path("results") / (file.stem if file else "step")) / "steps.nc"
     job = Job(series, result, overwrite=overwrite, with_thresholds=thresholds)
@@ -230,13 +263,3 @@ def units(
     )
     reply(units_answer(scales, converted), units_text(scales, converted), as_json=as_json)
     return DONE
-
-
-def _seconds(budget: float | None) -> float:
-    """Return the seconds that a run may take."""
-    if budget is None:
-        return float("inf")
-    # Written so that NaN, too, is refused.
-    if not budget > 0.0:
-        raise InputError(f"--budget {budget} is out of range; give a number of seconds above 0")
-    return budget

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from undula.errors import InputError
+
 Result = Annotated[Path, typer.Argument(metavar="RESULT.nc", help="A file that undula run wrote.")]
 Input = Annotated[
     Path | None, typer.Argument(metavar="[FILE.toml]", help="Input; without it, the defaults.")
@@ -24,3 +26,19 @@ Budget = Annotated[
     float | None,
     typer.Option(metavar="SECONDS", help="Stop after so long, with what there is (exit status 3)."),
 ]
+
+
+def seconds_of(budget: float | None) -> float:
+    """Return the seconds that a command may take.
+
+    Raises
+    ------
+    InputError
+        They are not above 0.
+    """
+    if budget is None:
+        return float("inf")
+    # Written so that NaN, too, is refused.
+    if not budget > 0.0:
+        raise InputError(f"--budget {budget} is out of range; give a number of seconds above 0")
+    return budget

@@ -44,6 +44,25 @@ def stepped(task: str, parameter: str, done: int, total: int) -> Iterator[Callab
 
 
 @contextmanager
+def swept(task: str, total: int, left: int) -> Iterator[Callable[[int, int], None]]:
+    """Yield a function to be called with the number of points that are left and that have failed.
+
+    So many of all are left at the beginning; how long those before took says nothing of them.
+    """
+    began = time.monotonic()
+    with meter(task) as show:
+
+        def tell(now: int, failed: int) -> None:
+            words = f"{total - now} of {total} points" + (f" ({failed} failed)" if failed else "")
+            if now < left:
+                to_go = (time.monotonic() - began) * now / (left - now)
+                words += f", {duration(to_go)} to go"
+            show((total - now) / total, words)
+
+        yield tell
+
+
+@contextmanager
 def approached(task: str, start: float, end: float) -> Iterator[Callable[[float], None]]:
     """Yield a function to be called with the value that was reached on the way to `end`."""
     began = time.monotonic()

@@ -6,7 +6,7 @@ dimensionless. The constraint forces follow from the state and are not part of i
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Protocol, Self
 
 from undula.arrays import Array, Nodes, State
@@ -22,6 +22,11 @@ class Energetics:
     stretching_energy: Array
     active_power: Array
     dissipation: Array
+
+    def part(self, chosen: slice) -> Self:
+        """Return those of some of the states."""
+        values = (getattr(self, field.name)[chosen] for field in fields(self))
+        return type(self)(*values)
 
 
 class Model(Protocol):
@@ -118,6 +123,9 @@ class Model(Protocol):
 
     def observe(self, unknowns: Array) -> Energetics:
         """Return energies and powers of rows of the integrator's vector, shape (m, n)."""
+
+    def energies(self, unknowns: Array) -> tuple[Array, Array]:
+        """Return the energies of bending and of stretching alone, each (m,): this is quick."""
 
     def nodes(self, x: State) -> Nodes:
         """Return the positions of all nodes in space, base first; axes in front are kept."""

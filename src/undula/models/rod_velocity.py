@@ -172,13 +172,15 @@ def rate_of_change(system: Any, y: Any, v: Any) -> None:
 def observe(system: Any, states: Any, out: Any) -> None:
     """Write energy of bending and of stretching, active power and dissipation to out (m, 4).
 
-    `states` (m, n) holds positions and multipliers; the multipliers are found anew.
+    Energies alone, which take no solving for velocities, to out (m, 2). `states` (m, n) holds
+    positions and multipliers; the multipliers are found anew.
     """
     y, v, found = np.empty(states.shape[1]), np.empty(states.shape[1]), np.empty(3)
     for k in range(states.shape[0]):
         y[:] = states[k]
         out[k, 0], out[k, 1] = elastic_energy(system, y)
-        find_multipliers(system, y)
-        find_velocity(system, y, v)
-        rates(system, y, v, found)
-        out[k, 2], out[k, 3] = found[1], found[2]
+        if out.shape[1] > 2:
+            find_multipliers(system, y)
+            find_velocity(system, y, v)
+            rates(system, y, v, found)
+            out[k, 2], out[k, 3] = found[1], found[2]

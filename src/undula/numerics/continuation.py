@@ -199,6 +199,8 @@ def located(
     whole = float((problem.weights * before.tangent) @ (after.u - before.u))
     whole += before.tangent_p * (after.p - before.p) / scale**2
     found: dict[float, Point] = {0.0: before, whole: after}
+    # Each is asked for once: what round-off leaves of a value may differ from one time to the next.
+    values: dict[float, float] = {}
 
     def value(length: float) -> float:
         if length not in found:
@@ -209,15 +211,19 @@ def located(
             if point is None:
                 raise ArithmeticError
             found[length] = point
-        return test(found[length])
+        if length not in values:
+            values[length] = test(found[length])
+        if np.isnan(values[length]):
+            raise ArithmeticError
+        return values[length]
 
-    if value(0.0) * value(whole) > 0.0:
-        return None
     try:
+        if value(0.0) * value(whole) > 0.0:
+            return None
         at = brentq(value, 0.0, whole, xtol=tolerance)
+        value(at)
     except ArithmeticError:
         return None
-    value(at)
     return found[at]
 
 

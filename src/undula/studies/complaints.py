@@ -4,7 +4,7 @@ import difflib
 import math
 from collections.abc import Iterable, Mapping
 from datetime import date, datetime, time
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -39,42 +39,56 @@ def explain(error: ValidationError, record: type[BaseModel]) -> str:
         A sentence such as ``load.slope = 2.0 is out of range; load.slope takes a number from
         -1 to 1``.
     """
-    mistakes: dict[tuple[str, ...], ErrorDetails] = {}
+    known = _known_keys(record)
+    mistakes: dict[str, ErrorDetails] = {}
     for details in error.errors():
         # A key of two types (a number or a word) fails once for each: it is one mistake.
-        mistakes.setdefault(tuple(str(part) for part in details["loc"][:2]), details)
+        mistakes.setdefault(_place(details, known)[-1], details)
     more = len(mistakes) - 1
-    place, first = next(iter(mistakes.items()))
-    sentence = _sentence(place, first, _known_keys(record))
+    sentence = _sentence(next(iter(mistakes.values())), known)
     return sentence if more == 0 else f"{sentence} ({more} more mistake{'s' * (more > 1)})"
 
 
-def _known_keys(record: type[BaseModel]) -> dict[str, dict[str, str]]:
-    """Return table name -> key -> what the key takes."""
-    known = {}
+def _known_keys(record: type[BaseModel], at: str = "") -> dict[str, dict[str, str]]:
+    """Return table name -> key -> what the key takes; a list of tables is called study.axes."""
+    known: dict[str, dict[str, str]] = {}
     for name, field in record.model_fields.items():
-        table = field.annotation
-        if isinstance(table, type) and issubclass(table, BaseModel):
-            known[name] = {key: str(of.description) for key, of in table.model_fields.items()}
+        listed = get_args(field.annotation)[:1]
+        for table in (field.annotation, *listed):
+            if isinstance(table, type) and issubclass(table, BaseModel):
+                keys = table.model_fields.items()
+                known[f"{at}{name}"] = {of.alias or key: str(of.description) for key, of in keys}
+                known |= _known_keys(table, f"{at}{name}.")
     return known
 
 
-def _sentence(
-    place: tuple[str, ...], details: ErrorDetails, known: Mapping[str, Mapping[str, str]]
-) -> str:
-    kind, value = details["type"], details["input"]
+def _place(details: ErrorDetails, known: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the table, the key, and both as they are told; only the table if it is itself wrong.
+
+    One table of a list is told by its number, as in ``study.axes[0].count``.
+    """
+    place = details["loc"]
+    outer = ".".join(map(str, place[:2]))
+    if outer in known and len(place) > 3:
+        return outer, str(place[3]), _name(f"{outer}[{place[2]}]", str(place[3]))
+    parts = [str(part) for part in place[:2]]
+    return (*parts, _name(*parts))
+
+
+def _sentence(details: ErrorDetails, known: Mapping[str, Mapping[str, str]]) -> str:
+    kind, value, place = details["type"], details["input"], _place(details, known)
     if kind == CONFLICT:
         return details["msg"]
-    if len(place) == 1:
+    if len(place) == 2:
         return _wrong_table(place[0], value, known)
-    table, key = place
+    table, key, name = place
     if kind == "extra_forbidden":
-        return f"{_name(table, key)} is not a known key; {_cure_of_key(table, key, known)}"
+        return f"{name} is not a known key; {_cure_of_key(table, key, known)}"
     if kind == IDLE_KEY:
         return _idle_key(table, key, value, details["ctx"])
-    name = _name(table, key)
     # In a list of numbers it is one entry that is wrong.
-    entry = "".join(f"[{part}]" for part in details["loc"][2:] if isinstance(part, int))
+    inner = details["loc"][4 if "." in table else 2 :]
+    entry = "".join(f"[{part}]" for part in inner if isinstance(part, int))
     verdict = _verdict(kind, value)
     return f"{name}{entry} = {_show(value)} {verdict}; {name} takes {known[table][key]}"
 
@@ -82,16 +96,21 @@ def _sentence(
 def _wrong_table(table: str, value: Any, known: Mapping[str, Mapping[str, str]]) -> str:
     if table in known:
         return f"{_name(table)} = {_show(value)} is not a table; write [{table}] and its keys below"
-    homes = [name for name, keys in known.items() if table in keys]
+    homes = [name for name in _outermost(known) if table in known[name]]
     if homes:
         return f"{table} stands outside its table; write {homes[0]}.{table}"
-    near = _nearest(table, known)
-    cure = f"did you mean [{near}]?" if near else f"the tables are {_listed(known, 'and')}"
+    tables = _outermost(known)
+    near = nearest(table, tables)
+    cure = f"did you mean [{near}]?" if near else f"the tables are {_listed(tables, 'and')}"
     return f"[{_name(table)}] is not a known table; {cure}"
 
 
+def _outermost(known: Iterable[str]) -> list[str]:
+    return [name for name in known if "." not in name]
+
+
 def _cure_of_key(table: str, key: str, known: Mapping[str, Mapping[str, str]]) -> str:
-    near = _nearest(key, known[table])
+    near = nearest(key, known[table])
     if near:
         return f"did you mean {table}.{near}?"
     homes = [name for name, keys in known.items() if key in keys]
@@ -114,7 +133,7 @@ def _verdict(kind: str, value: Any) -> str:
         return "is not a finite number"
     if kind.startswith(("greater_than", "less_than")):
         return "is out of range"
-    if kind.endswith("_too_short"):
+    if kind.endswith("too_short"):
         return "is empty"
     if kind == "literal_error" and isinstance(value, str):
         return "is not known"
@@ -142,7 +161,8 @@ def _name(*parts: str) -> str:
     return ".".join(part if part.isprintable() else repr(part) for part in parts)
 
 
-def _nearest(word: str, known: Iterable[str]) -> str | None:
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that was probably meant, None if there is none like it."""
     return next(iter(difflib.get_close_matches(word.lower(), list(known), n=1)), None)
 
 

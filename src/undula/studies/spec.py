@@ -16,6 +16,7 @@ from undula.studies.complaints import explain
 from undula.studies.model_tables import LoadTable, ModelTable
 from undula.studies.overrides import apply_overrides, read_toml
 from undula.studies.strict_table import Table, conflict
+from undula.studies.study_tables import StudyTable
 from undula.studies.tables import StabilityTable, StartTable, TimeTable
 
 
@@ -120,7 +121,13 @@ class StabilityInput(ModelInput):
     stability: StabilityTable = Field(default=StabilityTable(), description="a table")
 
 
-class _WholeFile(RunInput, StabilityInput):
+class StudyInput(RunInput):
+    """The complete, checked input of a study: that of its runs, and what is varied in it."""
+
+    study: StudyTable = Field(default=StudyTable(), description="a table")
+
+
+class _WholeFile(StudyInput, StabilityInput):
     """All that an input file may hold."""
 
 
@@ -171,28 +178,23 @@ def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunIn
         command, or a key or value is wrong. The sentence names the culprit and what would be
         right.
     """
-    return _read(RunInput, path, overrides)
+    return read_tables(RunInput, path, overrides)[1]
 
 
 def read_model_input(path: Path | None = None, overrides: Sequence[str] = ()) -> ModelInput:
     """Read what every command reads, as `read_input` does for a run."""
-    return _read(ModelInput, path, overrides)
+    return read_tables(ModelInput, path, overrides)[1]
 
 
 def read_stability_input(path: Path | None = None, overrides: Sequence[str] = ()) -> StabilityInput:
     """Read the input of a question about the straight state, as `read_input` does for a run."""
-    return _read(StabilityInput, path, overrides)
+    return read_tables(StabilityInput, path, overrides)[1]
 
 
-def _times(given: Mapping[str, Any]) -> dict[str, float]:
-    """Return the default times of a filament that the choices in an input leave a meaning."""
-    fields, chosen = TimeTable.model_fields, given.get("time")
-    if isinstance(chosen, Mapping) and chosen.get("until") == "settled":
-        return {"limit": fields["limit"].default}
-    return {"until": fields["until"].default}
-
-
-def _read(record: type[Input], path: Path | None, overrides: Sequence[str]) -> Input:
+def read_tables(
+    record: type[Input], path: Path | None, overrides: Sequence[str]
+) -> tuple[dict[str, Any], Input]:
+    """Read an input as `read_input` does for a run; return its tables as given, and checked."""
     given = apply_overrides({} if path is None else read_toml(path), overrides)
     _checked(_WholeFile, given)
     for override in overrides:
@@ -201,7 +203,16 @@ def _read(record: type[Input], path: Path | None, overrides: Sequence[str]) -> I
                 f"--set {override} changes a table that this command does not read; it reads"
                 f" {', '.join(f'[{known}]' for known in record.model_fields)}"
             )
-    return _checked(record, {name: given[name] for name in record.model_fields if name in given})
+    tables = {name: given[name] for name in record.model_fields if name in given}
+    return tables, _checked(record, tables)
+
+
+def _times(given: Mapping[str, Any]) -> dict[str, float]:
+    """Return the default times of a filament that the choices in an input leave a meaning."""
+    fields, chosen = TimeTable.model_fields, given.get("time")
+    if isinstance(chosen, Mapping) and chosen.get("until") == "settled":
+        return {"limit": fields["limit"].default}
+    return {"until": fields["until"].default}
 
 
 def _checked(record: type[Input], tables: Mapping[str, Any]) -> Input:

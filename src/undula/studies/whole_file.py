@@ -28,7 +28,7 @@ def claim_output(path: Path, *, overwrite: bool = False) -> None:
         The file exists and `overwrite` is false, or the folder cannot be made or written.
     """
     _refuse_existing(path, overwrite)
-    with _folder_trouble_told(path):
+    with folder_trouble_told(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent) as probe:
             probe.write(b"x")
@@ -54,7 +54,7 @@ def write_whole(path: Path, content: bytes, *, overwrite: bool = False) -> None:
     """
     _refuse_existing(path, overwrite)
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    with _folder_trouble_told(path):
+    with folder_trouble_told(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             _write_to_disk(temporary, content)
@@ -72,7 +72,19 @@ def _refuse_existing(path: Path, overwrite: bool) -> None:
 
 
 @contextmanager
-def _folder_trouble_told(path: Path) -> Iterator[None]:
+def folder_trouble_told(path: Path) -> Iterator[None]:
+    """Turn errors of writing a file into a sentence for the user.
+
+    Parameters
+    ----------
+    path
+        The file, or a folder that holds many and is told in its place.
+
+    Raises
+    ------
+    InputError
+        Its folder cannot be written or is full.
+    """
     try:
         yield
     except OSError as error:

@@ -1,0 +1,48 @@
+"""Shapes over the last period of a run, few enough to be kept of thousands of runs."""
+
+import math
+
+import numpy as np
+
+from undula.analysis.motion import Motion
+from undula.analysis.observables import mean_position, transverse
+from undula.analysis.run import Run
+from undula.analysis.spectral import spectral_peak
+from undula.arrays import Array, Instants, Shapes
+
+#: Enough for a beat to be drawn as a fan of shapes.
+SHAPES = 24
+
+
+def last_period(run: Run) -> tuple[Instants, Shapes]:
+    """Return samples about evenly over the last period of a run, the last one among them.
+
+    Parameters
+    ----------
+    run : Run
+
+    Returns
+    -------
+    times : ndarray, shape (SHAPES,)
+        [T]
+    shapes : ndarray, shape (SHAPES, N + 1, 3)
+        Nodes [L]. Of a motion without a period they span that of the strongest line of its
+        spectrum, of a straight one the whole late window.
+    """
+    late = run.window
+    length = float(late.time[-1] - late.time[0])
+    period = length if run.verdict.name == "straight" else min(length, _period(run, late))
+    wanted: Array = late.time[-1] - period * np.arange(SHAPES - 1, -1, -1) / SHAPES
+    nearest = np.rint(np.interp(wanted, late.time, np.arange(late.time.size))).astype(int)
+    return late.time[nearest], late.nodes[nearest]
+
+
+def _period(run: Run, late: Motion) -> float:
+    """Return the period of the motion, or what comes nearest to one; infinite without any."""
+    if late.time.size < 2:
+        return 0.0
+    if run.frequency is not None:
+        rate = run.frequency.value
+    else:
+        rate = spectral_peak(late.time, transverse(mean_position(late.nodes))[:, None])
+    return 1.0 / abs(rate) if rate else math.inf

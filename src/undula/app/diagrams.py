@@ -1,0 +1,158 @@
+"""`undula plot` of a stored study: diagram, gallery, paths or basins, and the solved borders."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from undula.analysis.basins import basins
+from undula.analysis.borders import BORDERS, Borders, solved_borders
+from undula.analysis.disagreements import Disagreement, disagreements
+from undula.analysis.parameters import FORCE
+from undula.analysis.sweep_points import TRY, axes_of, chosen, varied
+from undula.app.answers import DONE, notice, reply
+from undula.app.compiling import compilation_announced
+from undula.app.diagram_text import diagram_answer, diagram_text
+from undula.app.drawing import FORMATS, check_figure_name, save_figure
+from undula.app.progress import counted
+from undula.errors import InputError
+from undula.studies.borders_store import keep_borders, kept_borders, model_of
+from undula.studies.ranges import parse_axis
+from undula.studies.study_store import load_study
+from undula.studies.whole_file import claim_output, write_whole
+from undula.views import basin_diagram, gallery, mean_paths, phase_diagram, phase_page
+
+#: What of a study can be drawn.
+VIEWS = ("diagram", "gallery", "paths", "basins")
+_PAGE = ".html"
+_SHAPES = ("shapes", "shape_times")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be drawn of a study, where to, and what is solved for besides."""
+
+    view: str
+    out: Path | None
+    at: Sequence[str]
+    borders: bool
+    overwrite: bool
+
+
+def plot_study(path: Path, asked: Asked, *, as_json: bool) -> int:
+    """Draw a stored study and answer.
+
+    Raises
+    ------
+    InputError
+        There is no such study, an option is wrong, or a file cannot be written.
+    """
+    figure = _figure_path(path, asked)
+    store = _part(path, asked, with_shapes=figure.suffix == _PAGE or asked.view in VIEWS[1:3])
+    replaces = asked.overwrite or asked.out is None
+    claim_output(figure, overwrite=replaces)
+    found = _borders(path, store) if asked.borders else None
+    wrong = disagreements(store, found) if found else ()
+    _draw(store, asked.view, found, wrong, figure, overwrite=replaces)
+    shares = basins(store) if store.sizes[TRY] > 1 else None
+    answer = diagram_answer(store, found, wrong, shares) | {"figure": str(figure)}
+    reply(answer, diagram_text(answer), as_json=as_json)
+    return DONE
+
+
+def _figure_path(path: Path, asked: Asked) -> Path:
+    """Return where the figure goes: by default beside the store, under its name."""
+    if asked.view not in VIEWS:
+        raise InputError(f"--view {asked.view} is not known; take {', '.join(VIEWS)}")
+    if asked.out is None:
+        name = path.stem if asked.view == VIEWS[0] else f"{path.stem}-{asked.view}"
+        return path.with_name(name + FORMATS[0])
+    if asked.out.suffix.lower() != _PAGE:
+        check_figure_name("--out", asked.out)
+    elif asked.view != VIEWS[0]:
+        raise InputError(f"--out {asked.out} is a page, which shows --view diagram; give a figure")
+    return asked.out
+
+
+def _part(path: Path, asked: Asked, *, with_shapes: bool) -> xr.Dataset:
+    """Return what was chosen of a study, in memory."""
+    at = dict(_chosen_value(text) for text in asked.at)
+    stored = load_study(path)
+    if not with_shapes:
+        # They are nearly all of a store, and of no use here.
+        stored = stored.drop_vars(_SHAPES, errors="ignore")
+    store = chosen(stored, at).load()
+    if len(varied(store)) > 2:
+        several = ", ".join(varied(store))
+        raise InputError(
+            f"{path} varies {several}; choose values of all but two of them, as in --at"
+            f" {varied(store)[0]}={float(store[varied(store)[0]].values[0]):g}"
+        )
+    return store
+
+
+def _chosen_value(text: str) -> tuple[str, float]:
+    name, values = parse_axis("--at", text)
+    if len(values) != 1:
+        raise InputError(f"--at {text} has {len(values)} values; give one of the axis {name}")
+    return name, values[0]
+
+
+def _borders(path: Path, store: xr.Dataset) -> Borders:
+    """Return the borders of a study, solved for unless they are kept beside it."""
+    if FORCE not in axes_of(store):
+        raise InputError(
+            f"--borders are values of {FORCE}, which {path} does not vary; leave them out"
+        )
+    kept = kept_borders(path, store)
+    if kept is not None:
+        return kept
+    parameter = next((name for name in varied(store) if _is_of_the_model(name)), None)
+    values = () if parameter is None else store[parameter].values.tolist()
+    with counted("solving for borders") as tell, compilation_announced(notice):
+        found = solved_borders(
+            model_of(store), parameter, values, float(store[FORCE].values.max()), progress=tell
+        )
+    keep_borders(path, store, found)
+    return found
+
+
+def _is_of_the_model(name: str) -> bool:
+    """Tell whether an axis changes the model: starts and times do not move its borders."""
+    return name != FORCE and name.split(".")[0] in ("model", "load")
+
+
+def _draw(
+    store: xr.Dataset,
+    view: str,
+    found: Borders | None,
+    wrong: Sequence[Disagreement],
+    figure: Path,
+    *,
+    overwrite: bool,
+) -> None:
+    lines = _lines(found) if found and FORCE in varied(store) else []
+    notes = [(one.at, one.sentence) for one in wrong if not one.near]
+    if figure.suffix.lower() == _PAGE:
+        page = phase_page(store, lines, contradicting=notes)
+        write_whole(figure, page.encode(), overwrite=overwrite)
+        return
+    if view == "gallery":
+        drawn: Any = gallery(store)
+    elif view == "paths":
+        drawn = mean_paths(store, lines)
+    elif view == "basins":
+        drawn = basin_diagram(basins(store), lines, title=str(store.attrs.get("load", "")))
+    else:
+        drawn = phase_diagram(store, lines, contradicting=notes)
+    save_figure(drawn, figure, overwrite=overwrite)
+
+
+def _lines(found: Borders) -> list[tuple[str, Any, Any]]:
+    """Return the borders that have a force somewhere, as the views draw them."""
+    values = np.array(found.values)
+    curves = [(name, values, found.curve(name)[0]) for name in BORDERS]
+    return [curve for curve in curves if np.isfinite(curve[2]).any()]

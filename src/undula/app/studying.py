@@ -1,0 +1,52 @@
+"""The commands on studies of many runs: sweep, status."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from undula.app.options import Budget, Changes, Json, seconds_of
+
+
+def sweep(
+    file: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Input with a table [study].")],
+    changes: Changes = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", help="Processes on this machine.", show_default="one a processor"
+        ),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A running Dask scheduler to use instead."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="STORE", help="Folder of the store.", show_default=False)
+    ] = None,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="Do points that have failed again.")
+    ] = False,
+    budget: Budget = None,
+    as_json: Json = False,
+) -> int:
+    """Run a model at every point of a study, and keep all results in one store.
+
+    The store is a Zarr group, by default results/ and the name of the file. A study that was
+    stopped goes on with the same command.
+    """
+    from undula.app.sweeping import Asked
+    from undula.app.sweeping import sweep as carry_out
+
+    asked = Asked(workers, scheduler, retry_failed, seconds_of(budget))
+    return carry_out(file, changes or (), out, asked, as_json=as_json)
+
+
+def status(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="What undula sweep made.")],
+    as_json: Json = False,
+) -> int:
+    """Tell how far a study is, also while it goes on: points done, verdicts, failures."""
+    from undula.app.sweeping import status as tell
+
+    return tell(store, as_json=as_json)

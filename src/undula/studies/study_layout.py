@@ -1,0 +1,139 @@
+"""The layout of a stored study: which arrays there are, in what chunks, and what they say."""
+
+import json
+import os
+import platform
+import shutil
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import zarr
+
+from undula.analysis.last_period import SHAPES as SHAPE_COUNT
+from undula.analysis.sweep_points import TRY
+from undula.models.model import Model
+from undula.studies.blocks import chunk_shape
+from undula.studies.build import build_model
+from undula.studies.point import software
+from undula.studies.spec import parse_input
+from undula.studies.study import Study
+from undula.studies.study_columns import SEED, SHAPES, STATUS, STATUS_WORDS, Column, columns_of
+
+#: What a store is, and the number of its format.
+FORMAT = "study 1"
+#: Texts of fixed width belong to the second format of Zarr, not yet to the third.
+ZARR_FORMAT: Literal[2] = 2
+#: The folder of result files in a store.
+RUNS = "runs"
+
+_LIBRARIES = ("undula", "numpy", "numba")
+
+
+def lay_out(path: Path, study: Study) -> None:
+    """Make the store of a study without any results, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written, or is full.
+    """
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        _fill(temporary, study)
+        os.rename(temporary, path)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _fill(path: Path, study: Study) -> None:
+    wanted = parse_input(study.tables(0))
+    model = build_model(wanted)
+    group = zarr.create_group(path, zarr_format=ZARR_FORMAT, attributes=_attributes(study))
+    for name, values in _coordinates(study).items():
+        _add(group, name, values.dtype.str, (name,), values.shape, values.shape)[...] = values
+    _add_variables(group, study, model)
+    zarr.consolidate_metadata(path, zarr_format=ZARR_FORMAT)
+
+
+def _attributes(study: Study) -> dict[str, str]:
+    wanted = parse_input(study.tables(0))
+    versions = {"python": platform.python_version()} | {one: version(one) for one in _LIBRARIES}
+    return {
+        "study": json.dumps(study.dump()),
+        "versions": json.dumps(versions),
+        "software": software(),
+        "units": json.dumps(build_model(wanted).units.names()),
+        "load": wanted.tell({axis.key for axis in study.axes}),
+        "undula_format": FORMAT,
+    }
+
+
+def _coordinates(study: Study) -> dict[str, np.ndarray[Any, Any]]:
+    along = {axis.key: np.array(axis.values) for axis in study.axes}
+    along |= {TRY: np.arange(study.shape[-1])}
+    if study.keep == "period":
+        along |= {"axis": np.array(["x", "y", "z"])}
+    return along
+
+
+def _add_variables(group: zarr.Group, study: Study, model: Model) -> None:
+    dims = (*(axis.key for axis in study.axes), TRY)
+    lengths = {"shape": SHAPE_COUNT, "node": model.links + 1, "axis": 3}
+    columns = columns_of(study.label, study.keep)
+    largest = 8
+    if study.keep == "period":
+        largest *= SHAPE_COUNT * lengths["node"] * lengths["axis"]
+    chunks = chunk_shape(study.shape, point_bytes=largest, whole_lines=study.policy == "neighbour")
+    units = {**model.units.names(), "rate": "1/T"}
+    for column in columns:
+        further = SHAPES.get(column.name, ())
+        inner = tuple(lengths[name] for name in further)
+        attributes = _told(column, units)
+        _add(
+            group,
+            column.name,
+            column.dtype,
+            (*dims, *further),
+            (*study.shape, *inner),
+            (*chunks, *inner),
+            attributes,
+        )
+    seeds = np.array([study.seed(number) for number in range(study.count)], dtype=SEED.dtype)
+    # Known from the beginning and never written again.
+    array = _add(group, SEED.name, SEED.dtype, dims, study.shape, study.shape, _told(SEED, units))
+    array[...] = seeds.reshape(study.shape)
+
+
+def _told(column: Column, units: dict[str, str]) -> dict[str, Any]:
+    """Return the attributes of a variable."""
+    told: dict[str, Any] = {"long_name": column.meaning}
+    if column.quantity:
+        told["units"] = units[column.quantity]
+    if column is STATUS:
+        told |= {
+            "flag_values": list(range(len(STATUS_WORDS))),
+            "flag_meanings": " ".join(STATUS_WORDS),
+        }
+    return told
+
+
+def _add(
+    group: zarr.Group,
+    name: str,
+    dtype: str,
+    dims: tuple[str, ...],
+    shape: tuple[int, ...],
+    chunks: tuple[int, ...],
+    attributes: dict[str, Any] | None = None,
+) -> Any:
+    return group.create_array(
+        name,
+        shape=shape,
+        chunks=chunks,
+        dtype=dtype,
+        # Of numbers and texts without one, 0 and the empty text are read where nothing is written.
+        fill_value=np.nan if dtype == "float64" else None,
+        attributes={"_ARRAY_DIMENSIONS": list(dims), **(attributes or {})},
+    )

@@ -1,0 +1,198 @@
+"""A study on disk: one Zarr group for all its points, written block by block.
+
+A block is one chunk of every variable, so that writing it touches files of its own only. The file
+with the status of its points is written last, and each file takes its place in one step: a point
+that is said to be done, is, whenever the writing was cut short.
+"""
+
+import fcntl
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+import zarr
+
+from undula.errors import InputError
+from undula.studies.blocks import Blocks
+from undula.studies.differences import difference
+from undula.studies.point import software
+from undula.studies.study import Study
+from undula.studies.study_columns import STATUS, columns_of
+from undula.studies.study_layout import FORMAT, RUNS, ZARR_FORMAT, lay_out
+from undula.studies.whole_file import folder_trouble_told, write_whole
+
+Record = Mapping[str, Any]
+Arrays = dict[str, np.ndarray[Any, Any]]
+
+
+class StudyStore:
+    """The store of a study, to be written by one process.
+
+    Parameters
+    ----------
+    path
+        Its folder, as `open_study` has found or made it.
+    study
+        What it holds.
+    """
+
+    def __init__(self, path: Path, study: Study) -> None:
+        group = zarr.open_group(path, mode="r+", zarr_format=ZARR_FORMAT)
+        self.path, self.study = path, study
+        self._columns = columns_of(study.label, study.keep)
+        self._arrays: dict[str, Any] = {one.name: group[one.name] for one in self._columns}
+        self.blocks = Blocks(study.shape, self._arrays[STATUS.name].chunks)
+
+    def statuses(self) -> np.ndarray[Any, Any]:
+        """Return the status of every point, shape (count,)."""
+        return np.asarray(self._arrays[STATUS.name][...]).ravel()
+
+    def read(self, block: int) -> Arrays:
+        """Return what the store holds of a block, by variable."""
+        region = self.blocks.region(block)
+        return {name: np.array(array[region]) for name, array in self._arrays.items()}
+
+    def blank(self, block: int) -> Arrays:
+        """Return what the store holds of a block of which nothing has been written."""
+        region = self.blocks.region(block)
+        inside = tuple(part.stop - part.start for part in region)
+        return {
+            one.name: np.full(
+                (*inside, *self._arrays[one.name].shape[len(inside) :]), one.rest, one.dtype
+            )
+            for one in self._columns
+        }
+
+    def write(self, block: int, arrays: Arrays) -> None:
+        """Write what is known of a block, its status last.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be written or is full. What was there before is still there, and
+            holds.
+        """
+        region = self.blocks.region(block)
+        with folder_trouble_told(self.path):
+            for name, array in arrays.items():
+                if name != STATUS.name:
+                    self._arrays[name][region] = array
+            self._arrays[STATUS.name][region] = arrays[STATUS.name]
+
+    def forget(self, numbers: Sequence[int]) -> None:
+        """Mark points as not done."""
+        for block in range(len(self.blocks)):
+            inside = self.blocks.numbers(block)
+            local = [number - inside.start for number in numbers if number in inside]
+            if local:
+                region = self.blocks.region(block)
+                status = np.array(self._arrays[STATUS.name][region])
+                status.reshape(-1)[local] = STATUS.rest
+                with folder_trouble_told(self.path):
+                    self._arrays[STATUS.name][region] = status
+
+    def put(self, arrays: Arrays, local: Sequence[int], records: Iterable[Record]) -> None:
+        """Enter records of points into the arrays of their block, at their places in it."""
+        records = list(records)
+        dims = len(self.study.shape)
+        for column in self._columns:
+            flat = arrays[column.name].reshape(-1, *arrays[column.name].shape[dims:])
+            for at, record in zip(local, records, strict=True):
+                flat[at] = record.get(column.name, column.rest)
+
+    def keep_run(self, number: int, image: bytes) -> None:
+        """Store the result file of a point's run.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be written or is full.
+        """
+        write_whole(self.path / RUNS / run_name(self.study, number), image, overwrite=True)
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """Keep other processes from writing the store.
+
+        Raises
+        ------
+        InputError
+            Another process does.
+        """
+        with (self.path / ".lock").open("w") as lock:
+            try:
+                # The lock ends with the process, however that ends.
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                raise InputError(
+                    f"another undula sweep is at work on {self.path}; wait for it, or give another"
+                    " --out"
+                ) from None
+            yield
+
+
+def run_name(study: Study, number: int) -> str:
+    """Return the name of the file of a point's run: its indices along the axes, and of its try."""
+    return "-".join(map(str, study.place(number))) + ".nc"
+
+
+def open_study(path: Path, study: Study) -> StudyStore:
+    """Return the store of a study, which is made if there is none.
+
+    Raises
+    ------
+    InputError
+        There is something else in its place, or it holds another study or was made by another
+        version; or the folder cannot be written.
+    """
+    if not path.exists():
+        with folder_trouble_told(path):
+            lay_out(path, study)
+        return StudyStore(path, study)
+    stored = load_study(path)
+    if stored.attrs["software"] != software():
+        raise InputError(
+            f"{path} was made by undula {stored.attrs['software']} and cannot be gone on with by"
+            f" undula {software()}; go on with that version, or give another --out"
+        )
+    # Both have to have been through JSON, for lists to be alike.
+    wanted = json.loads(json.dumps(study.dump()))
+    differs = difference(json.loads(stored.attrs["study"]), wanted)
+    if differs is not None:
+        raise InputError(f"{path} holds another study, with {differs}; give another --out")
+    return StudyStore(path, study)
+
+
+def load_study(path: Path | str) -> xr.Dataset:
+    """Open a stored study; its variables are read when they are asked for.
+
+    Parameters
+    ----------
+    path
+        A store that ``undula sweep`` made, also while it is still at work on it.
+
+    Raises
+    ------
+    InputError
+        There is no such store.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(f"there is no study {path}; check the name")
+    try:
+        stored: xr.Dataset = xr.open_zarr(path, zarr_format=ZARR_FORMAT, chunks=None)
+    except (OSError, KeyError, ValueError):
+        raise InputError(
+            f"{path} is no stored study; give a folder that undula sweep made"
+        ) from None
+    found = stored.attrs.get("undula_format")
+    if found != FORMAT:
+        raise InputError(
+            f"{path} has the format {found!r}, not {FORMAT!r}; give a folder that this version of"
+            " undula sweep made"
+        )
+    return stored
