@@ -6,6 +6,7 @@ import pytest
 import undula as un
 from planar_chain import beat, rate_out_of_plane
 from undula.analysis.branch_records import Branch
+from undula.analysis.states import NotFound
 from undula.arrays import Array
 from undula.models.chain import Chain
 from undula.models.loads import TipLoad
@@ -185,3 +186,10 @@ def test_beyond_spinning_the_upper_links_windmill_about_a_level_axis(
     turns = turns_of_links(run, level)
     assert (turns[-upper:] > 5.0).all()
     assert (turns[:-upper] < 0.1).all()
+
+
+def test_beyond_the_fold_no_beat_is_made_up() -> None:
+    # At 20 K/L two links windmill; 32 steps of half a turn close on something all the same.
+    found = un.find_flapping(Chain(2, TipLoad(20.0)))
+    assert isinstance(found, NotFound)
+    assert "no beat that shorter steps confirm" in found.reason

@@ -128,7 +128,7 @@ def test_a_list_of_drags_with_a_wrong_one_is_told_with_the_cure(value: list[Any]
 @pytest.mark.parametrize("count", [0, 1, 4])
 def test_a_list_of_drags_that_is_not_one_for_each_bead_is_told(count: int) -> None:
     sentence = complaint_on(model=CHAIN | {"bead_drag": [1.0] * count})
-    assert sentence.startswith(f"model.bead_drag lists {count} beads and model.links = 3 has")
+    assert sentence.startswith(f"model.bead_drag lists {count} beads, and with model.links = 3")
     assert sentence.endswith("give one number for each, or one for all")
 
 
@@ -176,3 +176,9 @@ def test_beads_are_a_chains_and_their_numbers_the_bead_loads() -> None:
         "load.beads = [1] has no meaning for load.profile = 'tip'; use load.profile = 'beads' or"
         " remove load.beads"
     )
+
+
+def test_the_cure_for_a_key_of_the_other_kind_is_the_kind_whatever_else_it_hangs_on() -> None:
+    told = complaint_on(model={"kind": "chain", "tensile_stiffness": 1e4})
+    assert "model.kind" in told
+    assert "inextensibility" not in told

@@ -40,6 +40,10 @@ from undula.numerics.shooting import Shooting, Shot
 # Steps of half a beat, of order 9: the relative error of the frequency is then some 1e-11 to 1e-8,
 # which each answer states for itself.
 INTERVALS, METHOD = 32, RADAU_9
+_NOT_CONFIRMED = (
+    "what was found is no beat that shorter steps confirm, as where a joint folds; follow the"
+    " branch from a smaller force to see where it ends"
+)
 _TURNS_LOST = (
     "a motion was found whose joints jump by full turns, which is no beat; follow the branch from a"
     " smaller force, or give the beat found there as a guess"
@@ -77,8 +81,11 @@ def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping
         return NotFound(f"no planar beat was found from the guess: {search.advice}", residual)
     if not _keeps_turns(flat, search.orbit.shot):
         return NotFound(_TURNS_LOST)
-    found, half = _judged(model, search.orbit), search.orbit.shot.duration
-    return replace(found, time_error=found.frequency * time_error(search.orbit) / half)
+    error = time_error(search.orbit) / search.orbit.shot.duration
+    if not np.isfinite(error):
+        return NotFound(_NOT_CONFIRMED)
+    found = _judged(model, search.orbit)
+    return replace(found, time_error=found.frequency * error)
 
 
 def flapping_family(state: Flapping, parameter: str, scale: float) -> Family[Flapping]:

@@ -106,8 +106,8 @@ class ModelTable(Table):
     def _every_bead_has_its_drag(self) -> Self:
         if isinstance(self.bead_drag, tuple) and len(self.bead_drag) != self.links:
             raise conflict(
-                f"model.bead_drag lists {len(self.bead_drag)} beads and model.links = {self.links}"
-                " has as many as links; give one number for each, or one for all"
+                f"model.bead_drag lists {len(self.bead_drag)} beads, and with model.links ="
+                f" {self.links} there are {self.links}; give one number for each, or one for all"
             )
         return self
 

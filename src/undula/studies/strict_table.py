@@ -40,9 +40,15 @@ class Table(BaseModel):
     def _has_a_meaning(cls, value: Any, info: ValidationInfo) -> Any:
         # Runs for given keys only: pydantic does not validate defaults.
         rule = cls.only_with.get(info.field_name or "")
-        if rule is None or rule.chooser not in info.data:
+        # Where the chooser itself has no meaning, choosing otherwise there would not help.
+        while rule is not None and rule.chooser in info.data:
+            chosen = info.data[rule.chooser]
+            outer = cls.only_with.get(rule.chooser)
+            if outer is None or info.data.get(outer.chooser) in outer.values:
+                break
+            rule = outer
+        else:
             return value
-        chosen = info.data[rule.chooser]
         if chosen in rule.values:
             return value
         context = {"chooser": rule.chooser, "chosen": chosen, "values": rule.values}
