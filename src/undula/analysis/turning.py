@@ -18,6 +18,10 @@ from undula.arrays import Array, Shapes
 #: Way of a link's direction over which its turning is added up, in full turns: a swing to and fro
 #: has cancelled by then, and the axis of a windmill has hardly moved.
 SPAN = 3.0
+#: Fewer spans than this show no lasting turning.
+FEWEST_SPANS = 3
+#: A link that turns by more between two samples, in the median, is not followed by them [rad].
+FOLLOWED = 1.0
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,7 @@ def winding(nodes: Shapes) -> Winding:
     coherence, turns = np.zeros(links), np.zeros(links)
     for i in range(links):
         spans = _spans(angle[:, i], turned[:, i])
-        if len(spans):
+        if len(spans) >= FEWEST_SPANS and np.median(angle[:, i]) <= FOLLOWED:
             coherence[i], turns[i] = np.median(spans), SPAN * np.sum(spans)
     return Winding(coherence, turns, z.min(axis=0))
 
