@@ -32,6 +32,8 @@ DEATHS = 10
 #: Dask has its workers give back memory as soon as they can, and arrays of a megabyte then cost
 #: more to allocate than to fill: judging a run takes three times as long (docs/notes/sweeps.md).
 MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_TRIM_THRESHOLD_": 2**29}
+#: Times that workers of our own are started if one dies meanwhile.
+STARTS = 5
 #: Seconds to wait for a scheduler to answer.
 PATIENCE = 20.0
 
@@ -163,15 +165,25 @@ def _client(workers: int | None, scheduler: str | None) -> Iterator[Client]:
     }
     with (
         dask.config.set(settings),
-        LocalCluster(
-            n_workers=workers or CPU_COUNT,
+        _cluster(workers or CPU_COUNT) as cluster,
+        Client(cluster) as client,
+    ):
+        client.register_plugin(_LetDriverStop())
+        yield client
+
+
+def _cluster(workers: int, starts: int = STARTS) -> LocalCluster:
+    try:
+        return LocalCluster(
+            n_workers=workers,
             threads_per_worker=1,
             processes=True,
             # Any port that is free; the first choice might be taken.
             dashboard_address="127.0.0.1:0",
             silence_logs=logging.CRITICAL,
-        ) as cluster,
-        Client(cluster) as client,
-    ):
-        client.register_plugin(_LetDriverStop())
-        yield client
+        )
+    except RuntimeError:
+        # A worker that dies while it starts ends the start of all.
+        if starts == 1:
+            raise
+    return _cluster(workers, starts - 1)

@@ -24,6 +24,7 @@ from undula.models.starts import from_state, turned
 from undula.studies.build import build_model, build_schedule, build_start
 from undula.studies.spec import RunInput, parse_input
 from undula.studies.store import run_image
+from undula.studies.study_columns import LONGEST_TEXT
 
 #: The summary of a run holds these under the same names.
 _SAME = (
@@ -83,7 +84,14 @@ def point(job: Mapping[str, Any]) -> dict[str, Any]:
         record = {"status": FAILED, "reason": str(error)}
     except Exception as error:  # a study of thousands of points outlives any of them
         record = {"status": FAILED, "reason": f"{type(error).__name__}: {error}"}
-    return {**record, "seconds": time.perf_counter() - began}
+    told = {"reason": _in_a_line(record["reason"])} if "reason" in record else {}
+    return {**record, **told, "seconds": time.perf_counter() - began}
+
+
+def _in_a_line(text: str) -> str:
+    """Return a text in one line, cut off where it is longer than a store keeps."""
+    line = " ".join(text.split())
+    return line if len(line) <= LONGEST_TEXT else f"{line[: LONGEST_TEXT - 3]}..."
 
 
 def _solved(job: Mapping[str, Any]) -> dict[str, Any]:
