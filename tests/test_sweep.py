@@ -25,6 +25,9 @@ from undula.app.sweep_work import SweepWork
 from undula.studies.study import read_study
 from undula.studies.study_store import load_study, open_study
 
+# Each starts processes of its own, which takes its time on a busy machine.
+pytestmark = pytest.mark.slow
+
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 #: Beats of some links for a while: its points take a tenth of a second or so each.
 LONGER = """
@@ -43,9 +46,6 @@ values = [1.5, 2.0, 2.5]
 [[study.axes]]
 key = "load.force"
 from = 100.0
-
-# Each starts processes of its own, which takes its time on a busy machine.
-pytestmark = pytest.mark.slow
 to = 300.0
 count = 8
 """
