@@ -35,6 +35,7 @@ from undula.numerics.system import (
     rates,
     residual,
     rotate,
+    weigh,
 )
 
 FOLLOWER, BEAD, SPINNER = range(3)
@@ -132,6 +133,13 @@ def known_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> N
         bead_matrix(system, y, c, band)
     else:
         spinner_matrix(system, y, c, turn, band)
+
+
+@implements(weigh, Known)
+def known_weigh(system: Any, y: Any, u: Any, out: Any) -> None:
+    out[:] = u
+    if system.problem == BEAD:
+        out[2] = 0.0
 
 
 @implements(constraint_error, Known)

@@ -144,7 +144,7 @@ def test_a_flapping_that_still_grows_is_undecided() -> None:
         (
             np.real(WAVE) + 0.02j * ARC**2 * np.sin(2 * np.pi * 6.0 * COLUMN - 2.0 * ARC),
             STILL,
-            "precessing flapping",
+            "non-planar flapping",
         ),
         (
             spin(1.0 + 0.1 * ARC * np.cos(2.0 * np.pi * 13.3 * COLUMN)),

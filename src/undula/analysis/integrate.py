@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from types import FrameType
 from typing import Literal
 
+from undula.analysis.judging import Exponents
 from undula.analysis.regimes import UNDECIDED
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending, Schedule
@@ -43,6 +44,7 @@ def integrate(
     rtol: float = 1e-6,
     atol: float = 1e-10,
     budget: float = float("inf"),
+    lyapunov: bool = False,
     progress: Callable[[Progress], None] | None = None,
 ) -> Run:
     """Integrate a model in time.
@@ -64,6 +66,8 @@ def integrate(
         and absolute [rad].
     budget : float
         Seconds after which the run is ended with what it has.
+    lyapunov : bool
+        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
     progress : callable, optional
         Called with a `Progress` every few milliseconds.
 
@@ -80,8 +84,10 @@ def integrate(
     """
     schedule = Schedule(until=until, limit=limit, samples=samples, rtol=rtol, atol=atol)
     simulation = Simulation.begin(model, start, schedule)
-    carry_on(simulation, budget=budget, progress=progress)
-    return Run.of(simulation)
+    judged = carry_on(simulation, budget=budget, progress=progress)
+    if lyapunov:
+        return Run.of(simulation, Exponents.ALWAYS)
+    return judged or Run.of(simulation)
 
 
 def carry_on(
@@ -89,10 +95,11 @@ def carry_on(
     *,
     budget: float = float("inf"),
     progress: Callable[[Progress], None] | None = None,
-) -> None:
+) -> Run | None:
     """Advance a simulation to its end, or until Ctrl-C, or until the budget of seconds is spent.
 
-    A run to the settled state also ends when its motion is seen to be chaotic or quasi-periodic.
+    A run to the settled state also ends when its motion is seen to be chaotic or quasi-periodic;
+    then it is returned, judged.
     """
     begun = time.monotonic()
     due = FIRST_ASKED
@@ -103,25 +110,30 @@ def carry_on(
             seconds = time.monotonic() - begun
             if interrupted():
                 simulation.ending = Ending.INTERRUPTED
-                return
+                return None
             if seconds > budget:
                 simulation.ending = Ending.OUT_OF_TIME
-                return
+                return None
             if progress is not None:
                 progress(_progress(simulation, seconds))
             if simulation.watch.seen >= due:
                 due *= 2
-                if _is_irregular(simulation):
-                    simulation.ending = Ending.IRREGULAR
-                    return
+                judged = _irregular(simulation)
+                if judged is not None:
+                    return judged
+    return None
 
 
-def _is_irregular(simulation: Simulation) -> bool:
-    """Tell whether a run that waits for its motion to repeat itself is seen not to."""
+def _irregular(simulation: Simulation) -> Run | None:
+    """Return a run that waits for its motion to repeat itself if it is seen not to."""
     if simulation.schedule.until != "settled" or simulation.settled is not None:
-        return False
+        return None
+    simulation.ending = Ending.IRREGULAR
     run = Run.of(simulation)
-    return run.lyapunov is not None and run.verdict.name != UNDECIDED
+    if run.lyapunov is not None and run.verdict.name != UNDECIDED:
+        return run
+    simulation.ending = Ending.RUNNING
+    return None
 
 
 def _progress(simulation: Simulation, seconds: float) -> Progress:

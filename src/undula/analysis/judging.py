@@ -3,26 +3,29 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from undula.analysis.finite_separation import FOLDS, Separation, finite_separation
 from undula.analysis.lyapunov import Lyapunov, lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.regimes import (
+    SIGNIFICANT,
     UNDECIDED,
     Verdict,
     first_verdict,
-    settle_irregular,
     straight_verdict,
+    with_exponents,
 )
 from undula.analysis.schedule import Schedule
 from undula.analysis.settling import Settled
+from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model
 
-#: Maxima of the energy over which the Lyapunov exponents of an irregular motion are taken.
-FOLLOWED_MAXIMA = 300
-#: A motion without maxima, a steady one, is followed for so many turns.
-FOLLOWED_TURNS = 50
+#: Maxima, beats and turns over which exponents are taken, whichever is the shortest.
+FOLLOWED = {"maxima": 300.0, "periods": 150.0, "turns": 50.0}
 #: What is not told from so long a time is told from a longer one, or not at all.
 LENGTHS = (1, 8)
+#: Pairs of regular motions are watched for this part of that time.
+WATCHED = 1.0 / 15.0
 
 
 class Exponents(Enum):
@@ -35,17 +38,33 @@ class Exponents(Enum):
 
 @dataclass(frozen=True)
 class Judged:
-    """A verdict, the motion that it was made on, and the exponents if they were computed."""
+    """A verdict with what it was made of.
+
+    Attributes
+    ----------
+    verdict : Verdict
+    motion : Motion
+        The motion that it was made on.
+    exponents : Lyapunov or None
+        Lyapunov exponents, if they were asked for or needed.
+    separation : Separation or None
+        How fast runs from nearby states part, if exponents were asked for.
+    without : str
+        Why there are no exponents although they were asked for.
+    """
 
     verdict: Verdict
     motion: Motion
-    exponents: Lyapunov | None
+    exponents: Lyapunov | None = None
+    separation: Separation | None = None
+    without: str = ""
 
 
 def judge(
     model: Model,
     schedule: Schedule,
     motions: tuple[Motion, Motion | None],
+    last: Array,
     settled: Settled | None,
     exponents: Exponents,
 ) -> Judged:
@@ -58,6 +77,8 @@ def judge(
     motions
         The whole run, and its last periods at finer intervals if it needs them: these show all but
         a decay.
+    last
+        The integrator's vector at its end, shape ``(n,)``.
     settled
         How it repeats itself, if it was watched for that and does.
     exponents
@@ -67,16 +88,14 @@ def judge(
     since = settled.since if settled else None
     straight = None if close is None else straight_verdict(whole.time, whole.nodes)
     motion = whole if close is None or straight is not None else close
-    verdict = straight or _verdict(motion, since)
-    irregular = verdict.late is not None and exponents is Exponents.IF_IRREGULAR
-    if not irregular and exponents is not Exponents.ALWAYS:
-        return Judged(verdict, motion, None)
-    for times in LENGTHS:
-        found = _exponents(model, schedule, motion, verdict, times)
-        settled_verdict = settle_irregular(verdict, found)
-        if settled_verdict.name != UNDECIDED:
-            break
-    return Judged(settled_verdict, motion, found)
+    judged = Judged(straight or _verdict(motion, since), motion)
+    asked = exponents is Exponents.ALWAYS
+    if not asked and (judged.verdict.late is None or exponents is Exponents.NEVER):
+        return judged
+    try:
+        return _with_exponents(model, schedule, judged, last, parting=asked)
+    except InputError as error:
+        return Judged(judged.verdict, motion, without=str(error))
 
 
 def _verdict(motion: Motion, since: float | None) -> Verdict:
@@ -89,16 +108,33 @@ def _verdict(motion: Motion, since: float | None) -> Verdict:
     )
 
 
-def _exponents(
-    model: Model, schedule: Schedule, motion: Motion, verdict: Verdict, times: int
-) -> Lyapunov:
-    """Follow the motion from its last state, so many times as long as is mostly enough."""
-    if verdict.name == "straight":
-        raise InputError("a straight state has no motion to take Lyapunov exponents of")
-    late = motion.late(verdict.window_start)
-    span, evidence = float(late.time[-1] - late.time[0]), verdict.evidence
-    beats = evidence.get("energy_maxima", 0.0)
-    cycles = max(beats / FOLLOWED_MAXIMA, abs(evidence.get("turns", 0.0)) / FOLLOWED_TURNS)
-    duration = times * (span / cycles if cycles > 0.0 else span)
-    last = model.from_nodes(motion.nodes[-1])
-    return lyapunov(model, last, duration, rtol=schedule.rtol, atol=schedule.atol)
+def _with_exponents(
+    model: Model, schedule: Schedule, judged: Judged, last: Array, *, parting: bool
+) -> Judged:
+    """Follow the motion on from its last state, for longer if the first exponents do not tell."""
+    if judged.verdict.name == "straight":
+        raise InputError(
+            "a motion that ends straight has the eigenvalues of the straight state for exponents:"
+            " ask undula stability"
+        )
+    duration = _duration(judged)
+    for times in LENGTHS:
+        found = lyapunov(model, last, times * duration, rtol=schedule.rtol, atol=schedule.atol)
+        verdict = with_exponents(judged.verdict, found)
+        unclear = verdict.name == UNDECIDED and found.beyond_symmetry > 0.0
+        if judged.verdict.late is None or not unclear:
+            break
+    pairs = None
+    if parting and not model.winds:
+        chaotic = found.value > SIGNIFICANT * found.error
+        watched = FOLDS / found.value if chaotic else WATCHED * duration
+        pairs = finite_separation(model, model.positions(last), watched)
+    return Judged(verdict, judged.motion, found, pairs)
+
+
+def _duration(judged: Judged) -> float:
+    """Return how long to follow a motion [T]."""
+    late, seen = judged.motion.late(judged.verdict.window_start), judged.verdict.evidence
+    span = float(late.time[-1] - late.time[0])
+    cycles = max(abs(seen.get(name, 0.0)) / count for name, count in FOLLOWED.items())
+    return span / cycles if cycles > 0.0 else span

@@ -1,16 +1,12 @@
-"""Lyapunov exponents: how fast neighbouring motions part, from the variational equations.
+"""Lyapunov exponents of a model's motion: how fast neighbouring motions part.
 
-A few small changes of the state are carried along with the motion (`undula.numerics.tangents`) and
-made orthonormal again every now and then; what that takes out grows at the Lyapunov exponents. Two
-of these are known: a shift in time and a turn about the axis neither grow nor decay. They are 0 up
-to the errors of the method; what is left when they are taken out tells whether a motion is chaotic.
-
-Source: Benettin, Galgani, Giorgilli & Strelcyn (1980), Meccanica 15, 9.
+Two of them are known: a shift in time and a turn about the axis neither grow nor decay. They are 0
+up to the errors of the method; what is left when they are taken out tells whether a motion is
+chaotic.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -18,21 +14,17 @@ from undula.analysis.schedule import Schedule
 from undula.arrays import Array, State
 from undula.errors import InputError, is_number
 from undula.models.model import Model
+from undula.numerics.exponents import BLOCKS, TURNING_IN, growth, mean_rates
 from undula.numerics.memory import TIME, Memory, start
 from undula.numerics.results import Status
 from undula.numerics.schemes import NDF
-from undula.numerics.system import RATES, derivative_half_bandwidth
-from undula.numerics.tangents import advance_with_changes
+from undula.numerics.system import RATES
 
-#: Blocks that a motion is cut into; changes are made orthonormal at the end of each.
-BLOCKS = 400
-#: The first part of them turns the changes into their directions and is not counted.
-TURNING_IN = 0.25
-#: Batches of blocks whose means give the statistical error.
-BATCHES = 10
 # Velocity and turning are one direction if the sine of their angle stays below this: they agree to
 # the errors of the integration in spinning, and differ by far more in any other motion.
 _PARALLEL = 1e-3
+# A speed below this is round-off [L/T].
+_AT_REST = 1e-9
 # A first step that moves no position by more than this part of the length.
 _FIRST_MOVE = 1e-6
 
@@ -44,21 +36,17 @@ class Lyapunov:
     Attributes
     ----------
     exponents, errors : ndarray, shape (k,)
-        The leading exponents [1/T], not rising, and their errors: statistical, from means over
-        batches, or half the difference between the two halves of the motion if that is more.
+        The leading exponents [1/T], not rising, and their errors: see `undula.numerics.exponents`.
     symmetries : int
         How many of them belong to shifts in time and turns about the axis and are 0.
     duration : float
         Time over which they were taken [T].
-    maxima : int
-        Maxima of the elastic energy in that time.
     """
 
     exponents: Array
     errors: Array
     symmetries: int
     duration: float
-    maxima: int
 
     @property
     def value(self) -> float:
@@ -102,10 +90,11 @@ def lyapunov(
     Parameters
     ----------
     model : Model
-    state : ndarray, shape (model.size,)
-        A state on the attractor, such as the last one of a run.
+    state : ndarray, shape (model.size,) or (n,)
+        A state on the attractor, such as the last one of a run, or the integrator's vector there,
+        which knows how far joints have wound up.
     duration : float
-        Time to follow the motion [T], some hundred beats or more.
+        Time to follow the motion [T], some hundred beats or more; the first quarter is not counted.
     rtol, atol : float
         Tolerances of the integration.
     seed : int
@@ -116,92 +105,47 @@ def lyapunov(
     Raises
     ------
     InputError
-        The duration is not positive, or the motion cannot be followed.
+        The duration is not positive, the state does not move, or the motion cannot be followed.
     """
     if not (is_number(duration) and duration > 0.0):
         raise InputError(f"duration = {duration!r} has to be a positive finite number")
-    following = _Following.begin(model, state, duration, rtol, atol, seed)
-    growth, maxima = [], 0
-    for block in range(BLOCKS):
-        grown, found = following.through(duration * (block + 1) / BLOCKS)
-        growth.append(grown)
-        maxima += found
-        if progress:
-            progress(block + 1, BLOCKS)
-    rates = np.array(growth)[round(TURNING_IN * BLOCKS) :] / (duration / BLOCKS)
-    values = rates.mean(axis=0)
-    order = np.argsort(-values)
-    return Lyapunov(
-        exponents=values[order],
-        errors=_errors(rates)[order],
-        symmetries=following.symmetries,
-        duration=duration * (1.0 - TURNING_IN),
-        maxima=round(maxima * (1.0 - TURNING_IN)),
-    )
-
-
-def _errors(rates: Array) -> Array:
-    """Return the errors of the means of rates (blocks, k)."""
-    batches = np.array([part.mean(axis=0) for part in np.array_split(rates, BATCHES)])
-    statistical = batches.std(axis=0, ddof=1) / np.sqrt(BATCHES)
-    halves = np.array_split(rates, 2)
-    drift = 0.5 * np.abs(halves[0].mean(axis=0) - halves[1].mean(axis=0))
-    return np.asarray(np.maximum(statistical, drift))
-
-
-@dataclass
-class _Following:
-    """A motion with its small changes."""
-
-    model: Model
-    memory: Memory
-    options: Any
-    changes: Array
-    band: Array
-    symmetries: int = 0
-
-    @classmethod
-    def begin(
-        cls, model: Model, state: State, duration: float, rtol: float, atol: float, seed: int
-    ) -> "_Following":
-        x = model.admissible(state)
-        unknowns, rates = model.unknowns(x), model.rates(x)
-        speed = float(np.abs(model.positions(rates[:-RATES])).max())
-        step = min(duration / BLOCKS, _FIRST_MOVE / speed if speed > 0.0 else duration)
-        memory = start(model.system, NDF, unknowns, rates, 0.0, step)
-        options = Schedule(until=duration, rtol=rtol, atol=atol).options(model)._replace(frame=0)
-        moving = model.position_mask == 1.0
-        count = model.dimension  # one more than there are symmetries
-        first = np.zeros((count, memory.differences.shape[0], unknowns.size))
-        random = np.random.default_rng(seed)
-        first[:, 0, moving] = random.normal(size=(count, int(moving.sum())))
-        half = derivative_half_bandwidth(type(model.system))
-        return cls(model, memory, options, first, np.zeros((unknowns.size, 2 * half + 1)))
-
-    def through(self, end: float) -> tuple[Array, int]:
-        """Go on to a time; return by what logarithm each change has grown, and energy maxima."""
-        code, maxima = advance_with_changes(
-            self.model.system, self.memory, self.options, self.changes, self.band, end
-        )
-        if Status(code) is not Status.DONE:
+    memory = _begin(model, state, duration)
+    options = Schedule(until=duration, rtol=rtol, atol=atol).options(model)
+    blocks, symmetries = [], 0
+    # One more than there are symmetries.
+    changes = model.dimension
+    for block in growth(model.system, memory, options, count=changes, duration=duration, seed=seed):
+        if block.status is not Status.DONE:
             raise InputError(
-                f"the motion could not be followed beyond t = {self.memory.real[TIME]:.6g}:"
-                f" {Status(code).name}; take a smaller rtol"
+                f"the motion could not be followed beyond t = {memory.real[TIME]:.6g}:"
+                f" {block.status.advice}"
             )
-        moving = self.model.position_mask == 1.0
-        triangle = np.linalg.qr(self.changes[:, 0, moving].T)[1]
-        # The same combinations that make the last row orthonormal, for the whole history.
-        flat = self.changes.reshape(len(triangle), -1)
-        self.changes[:] = np.linalg.solve(triangle.T, flat).reshape(self.changes.shape)
-        self.symmetries = max(self.symmetries, self._directions())
-        return np.log(np.abs(np.diag(triangle))), int(maxima)
+        blocks.append(block)
+        symmetries = max(symmetries, _directions(model, memory))
+        if progress:
+            progress(len(blocks), BLOCKS)
+    values, errors = mean_rates(blocks, rtol)
+    return Lyapunov(values, errors, symmetries, duration * (1.0 - TURNING_IN))
 
-    def _directions(self) -> int:
-        """Return how many directions the velocity and the turning span."""
-        x = self.model.positions(self.memory.differences[0, :-RATES])
-        velocity, turning = self.model.rhs(x), self.model.rotation_generator(x)
-        sizes = np.linalg.norm(velocity), np.linalg.norm(turning)
-        if min(sizes) == 0.0:
-            return int(max(sizes) > 0.0)
-        cosine = float(velocity @ turning / (sizes[0] * sizes[1]))
-        return 2 if np.sqrt(max(0.0, 1.0 - cosine**2)) > _PARALLEL else 1
+
+def _begin(model: Model, state: Array, duration: float) -> Memory:
+    known = state.shape == model.position_mask.shape
+    x = model.positions(state) if known else model.admissible(state)
+    rates = model.rates(x)
+    speed = float(np.abs(model.positions(rates[:-RATES])).max())
+    if speed < _AT_REST:
+        raise InputError("a state at rest has no motion to take Lyapunov exponents of")
+    unknowns = state if known else model.unknowns(x)
+    step = min(duration / BLOCKS, _FIRST_MOVE / speed)
+    return start(model.system, NDF, unknowns, rates, 0.0, step)
+
+
+def _directions(model: Model, memory: Memory) -> int:
+    """Return how many directions the velocity and the turning span."""
+    x = model.positions(memory.differences[0, :-RATES])
+    velocity, turning = model.rhs(x), model.rotation_generator(x)
+    sizes = np.linalg.norm(velocity), np.linalg.norm(turning)
+    if min(sizes) == 0.0:
+        return int(max(sizes) > 0.0)
+    cosine = float(velocity @ turning / (sizes[0] * sizes[1]))
+    return 2 if np.sqrt(max(0.0, 1.0 - cosine**2)) > _PARALLEL else 1

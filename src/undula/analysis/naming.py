@@ -21,46 +21,55 @@ from functools import cached_property
 
 import numpy as np
 
-from undula.analysis.evidence import Evidence
+from undula.analysis.evidence import GROWTH_FACTOR, Evidence
 from undula.analysis.planes import planarity
 from undula.analysis.returns import RECURRENT, STEADY_FACTOR, Recurrence, recurrence
+from undula.analysis.trends import out_of_plane, shape_change, swing
 from undula.analysis.turning import Winding, sense_of_rotation, winding
+from undula.analysis.window import STATIONARY
 from undula.arrays import Array, Instants, Shapes
 
 # Largest change of shape up to turns in spinning, relative: far above integration errors, far below
 # any modulation that would deserve another name.
 SHAPE_TOLERANCE = 5e-3
-# The same for the energy, which is quadratic in the shape.
-ENERGY_TOLERANCE = 1e-2
 # A steady shape must be seen to come round once; in less it could grow or shrink unseen.
 MIN_TURNS = 1.0
 # Share out of the plane below which a motion is planar: a trace of the start that still decays.
 PLANAR_TOLERANCE = 0.02
 # Share out of the plane below which a beat in a turning plane still is one.
 PRECESSING_TOLERANCE = 0.2
+# What grows from less than this part of its tolerance is too small to be seen growing.
+VISIBLE = 0.05
 # Share of the motion that its harmonics may leave unexplained: the highest ones of a violent
 # flapping, and one or two more where few samples a period make them fold together.
 PERIODIC_TOLERANCE = 0.05
 # Sense of rotation from which a motion goes round rather than to and fro.
 GOES_ROUND = 0.5
+# A plane that turns by less than a shape that comes back may be off, does not turn [rad a period].
+PRECESSES = RECURRENT
 # Coherence of the turning of a windmilling link: swings stay below 0.3, windmills above 0.7 (their
 # axis turns while they are watched).
 WINDMILLS = 0.6
 # A windmilling link points backwards at times: its direction has this z component or less.
 BACKWARDS = -0.7
-# Fewer maxima of the energy than this do not show that a motion is irregular.
-MANY_MAXIMA = 60
+# Fewer maxima than this do not show that a motion is irregular: with up to ten a period it would
+# have come back four times.
+MANY_MAXIMA = 40
 # A criterion met by less than this factor does not decide between two names.
 THIN = 1.05
 
 
 @dataclass(frozen=True)
 class Name:
-    """A name with the factor by which its criteria are met, at least 1, and one sentence."""
+    """A name with one sentence and the factor by which its criteria are met, at least 1.
+
+    `unrest` tells what still changes, if the motion only looks settled.
+    """
 
     name: str
     reason: str
     margin: float
+    unrest: str = ""
 
 
 @dataclass(frozen=True)
@@ -73,21 +82,18 @@ class Late:
         Equally spaced times [T], shape ``(m,)``.
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
-    bending_energy
-        Bending energy, shape ``(m,)``.
     seen
         What every window is measured for.
     """
 
     time: Instants
     nodes: Shapes
-    bending_energy: Instants
     seen: Evidence
 
     @cached_property
     def back(self) -> Recurrence | None:
         """How the shape comes back."""
-        return recurrence(self.time, self.nodes, self.bending_energy)
+        return recurrence(self.time, self.nodes)
 
     @cached_property
     def sense(self) -> float:
@@ -99,15 +105,20 @@ class Late:
         """Turning of the links about axes across z."""
         return winding(self.nodes)
 
+    @property
+    def plane_turn(self) -> float:
+        """Angle by which the plane of the beat turns until the shape comes back [rad]."""
+        # A half-turn is the mirror image of a beat in a plane, not a turning of the plane.
+        return (self.back.turn + 0.5 * np.pi) % np.pi - 0.5 * np.pi if self.back else 0.0
+
     @cached_property
     def beat_planarity(self) -> float:
         """Share out of the plane of the beat when the slow turning of that plane is taken back."""
         back = self.back
         if back is None:
             return self.seen.planarity
-        # A half-turn is the mirror image of a beat in a plane, not a turning of the plane.
-        turn = (back.turn + 0.5 * np.pi) % np.pi - 0.5 * np.pi
-        return planarity(_turned(self.nodes, -turn / back.period * (self.time - self.time[0])))
+        turned = -self.plane_turn / back.period * (self.time - self.time[0])
+        return planarity(_turned(self.nodes, turned))
 
     @property
     def irregular(self) -> bool:
@@ -123,7 +134,7 @@ class Late:
             record["winding_coherence"] = float(self.winding.coherence.max())
         if self.__dict__.get("back") is not None and self.back is not None:
             record |= {
-                "energy_maxima": float(self.back.maxima),
+                "maxima": float(self.back.maxima),
                 "maxima_a_period": float(self.back.every),
                 "recurrence_distance": self.back.distance,
                 "shape_period": self.back.period,
@@ -134,7 +145,7 @@ class Late:
 
 def steady(seen: Evidence) -> bool:
     """Whether the shape does not change, up to turns."""
-    return seen.shape_change <= SHAPE_TOLERANCE and seen.energy_swing <= ENERGY_TOLERANCE
+    return seen.shape_change <= SHAPE_TOLERANCE
 
 
 def spins(late: Late) -> Name | None:
@@ -142,11 +153,14 @@ def spins(late: Late) -> Name | None:
     seen = late.seen
     if not steady(seen) or abs(seen.turns) < MIN_TURNS:
         return None
-    change = f"its shape changes by {seen.shape_change:.2g} of itself"
+    change = shape_change(late.nodes)
+    grows = change.grows(STEADY_FACTOR, VISIBLE * SHAPE_TOLERANCE)
     return Name(
         "spinning",
-        f"rotates steadily: over {seen.turns:.3g} turns {change}",
+        f"rotates steadily: over {seen.turns:.3g} turns its shape changes by"
+        f" {seen.shape_change:.2g} of itself",
         min(_below((seen.shape_change, SHAPE_TOLERANCE)), abs(seen.turns) / MIN_TURNS),
+        f"its shape changes more and more, by {change.last:.2g} lately" if grows else "",
     )
 
 
@@ -168,19 +182,18 @@ def windmills(late: Late) -> Name | None:
     )
 
 
-def flaps(late: Late, stationary: float) -> Name | None:
+def flaps(late: Late) -> Name | None:
     """Return the name of a motion in a plane with one frequency."""
     seen = late.seen
-    repeats = seen.misfit <= PERIODIC_TOLERANCE and seen.drift <= stationary
+    repeats = seen.misfit <= PERIODIC_TOLERANCE and seen.drift <= STATIONARY
     if not (repeats and seen.planarity <= PLANAR_TOLERANCE):
         return None
-    if seen.energy_swing <= ENERGY_TOLERANCE:
-        return None
-    plane = f"{seen.planarity:.2g} of the motion out of its plane"
     return Name(
         "planar flapping",
-        f"periodic over {seen.periods:.3g} periods with {plane}",
+        f"periodic over {seen.periods:.3g} periods with {seen.planarity:.2g} of the motion out of"
+        " its plane",
         _below((seen.planarity, PLANAR_TOLERANCE), (seen.misfit, PERIODIC_TOLERANCE)),
+        _leaves_its_plane(late),
     )
 
 
@@ -189,35 +202,59 @@ def returning(late: Late) -> Name | None:
     back = late.back
     if back is None or not back.repeats or back.growth > STEADY_FACTOR:
         return None
-    turn = np.degrees(back.turn)
     manner = (
         f"its shape comes back every {back.period:.4g} T to {back.distance:.1g} of itself, turned"
-        f" by {turn:.3g} degrees"
+        f" by {np.degrees(back.turn):.3g} degrees"
     )
-    return _kinematic(late, manner, _below((back.distance, RECURRENT)))
+    return _kinematic(late, manner, _below((back.distance, RECURRENT)), _settles(late))
 
 
-def wandering(late: Late) -> Name:
-    """Return the name of a motion on a torus: its shape never comes back, nor does it diverge."""
-    return _kinematic(late, "quasi-periodic: its shape never quite comes back", 1e2)
+def wandering(late: Late, parting: str) -> Name:
+    """Return the name of a motion on a torus: its shape never comes back, nor does it diverge.
+
+    `parting` tells how fast neighbouring motions part.
+    """
+    manner = f"quasi-periodic: its shape never quite comes back, but {parting}"
+    return _kinematic(late, manner, np.inf, "")
 
 
-def _kinematic(late: Late, manner: str, margin: float) -> Name:
+def _kinematic(late: Late, manner: str, margin: float, unrest: str) -> Name:
     """Name a motion by how it moves."""
     planar, sense = late.seen.planarity, abs(late.sense)
     if planar <= PLANAR_TOLERANCE:
         margin = min(margin, _below((planar, PLANAR_TOLERANCE)))
-        return Name("planar flapping", f"{manner}, {planar:.2g} of it out of its plane", margin)
+        told = f"{manner}, {planar:.2g} of it out of its plane"
+        return Name("planar flapping", told, margin, unrest)
     if sense >= GOES_ROUND:
-        margin = min(margin, sense / GOES_ROUND)
-        return Name("modulated spinning", f"{manner}; it goes round the axis", margin)
+        told = f"{manner}; it goes round the axis"
+        return Name("modulated spinning", told, min(margin, sense / GOES_ROUND), unrest)
     margin = min(margin, _below((sense, GOES_ROUND)))
-    beat = late.beat_planarity
-    if beat <= PRECESSING_TOLERANCE:
-        margin = min(margin, _below((beat, PRECESSING_TOLERANCE)))
-        return Name("precessing flapping", f"{manner}; each beat is {beat:.2g} off a plane", margin)
-    margin = min(margin, beat / PRECESSING_TOLERANCE)
-    return Name("non-planar flapping", f"{manner}; each beat is {beat:.2g} off a plane", margin)
+    beat, turn = late.beat_planarity, abs(late.plane_turn)
+    told = f"{manner}; each beat is {beat:.2g} off a plane"
+    if beat <= PRECESSING_TOLERANCE and turn >= PRECESSES:
+        margin = min(margin, _below((beat, PRECESSING_TOLERANCE)), turn / PRECESSES)
+        return Name("precessing flapping", told, margin, unrest)
+    flat, turns = beat / PRECESSING_TOLERANCE, _below((turn, PRECESSES))
+    # One of the two tells it from a beat in a turning plane.
+    return Name("non-planar flapping", told, min(margin, max(flat, turns)), unrest)
+
+
+def _settles(late: Late) -> str:
+    """Tell what still changes of a motion that comes back, if anything does."""
+    change = swing(late.nodes).difference
+    if change > STATIONARY:
+        return f"its swing changes by {change:.1%} between halves of the window"
+    return _leaves_its_plane(late)
+
+
+def _leaves_its_plane(late: Late) -> str:
+    """Tell whether what is out of the plane grows, or is on its way back to it."""
+    share = out_of_plane(late.nodes)
+    if share.grows(GROWTH_FACTOR, VISIBLE * PLANAR_TOLERANCE):
+        return f"it leaves its plane, by {share.first:.2g} and then {share.last:.2g} of itself"
+    if share.first > max(PLANAR_TOLERANCE, GROWTH_FACTOR * share.last):
+        return f"it settles into a plane, {share.first:.2g} and then {share.last:.2g} off it"
+    return ""
 
 
 def _below(*criteria: tuple[float, float]) -> float:

@@ -3,7 +3,7 @@
 `straight` is the equilibrium; the other names are those of `undula.analysis.naming`, and `chaotic`.
 What has not settled is left `undecided`, with the reason and how much longer to run. A motion that
 is seen long enough and comes back to no shape is irregular; whether it is chaotic or on a torus is
-told by its Lyapunov exponent, which needs the model: `settle_irregular`.
+told by its Lyapunov exponents, which need the model: `with_exponents`.
 """
 
 from __future__ import annotations
@@ -14,11 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from undula.analysis.decay import LinearMotion
-from undula.analysis.evidence import Evidence, measure
+from undula.analysis.evidence import measure
 from undula.analysis.lyapunov import Lyapunov
+from undula.analysis.missing import MIN_SAMPLES_PER_PERIOD, missing
 from undula.analysis.naming import (
-    MANY_MAXIMA,
-    PLANAR_TOLERANCE,
     THIN,
     Late,
     Name,
@@ -30,8 +29,9 @@ from undula.analysis.naming import (
     windmills,
 )
 from undula.analysis.observables import displacement
-from undula.analysis.straightening import DECAY_FACTOR, LATE_FACTOR, Straightening, straightening
-from undula.analysis.window import STATIONARY, late_windows
+from undula.analysis.returns import RECURRENT
+from undula.analysis.straightening import DECAY_FACTOR, Straightening, straightening
+from undula.analysis.window import late_windows
 from undula.arrays import Instants, Shapes
 
 UNDECIDED = "undecided"
@@ -41,11 +41,10 @@ UNMOVED = 1e-12
 MOST = 100.0
 # Without this many samples nothing can be said about a motion.
 MIN_SAMPLES = 8
-# With fewer samples a period than this, sampling is named first among what an undecided run lacks.
-MIN_SAMPLES_PER_PERIOD = 6.0
 # A Lyapunov exponent above so many of its errors is positive.
 SIGNIFICANT = 3.0
-# Neighbouring motions that part by less than this factor in a cycle do not part.
+# Neighbouring motions that part by less than the exponential of this from one maximum of the
+# displacement to the next do not part.
 LEAST_GROWTH = 0.05
 
 
@@ -117,7 +116,7 @@ def first_verdict(
     for start in _windows(time, nodes, bending_energy, settled_from):
         part = slice(start, None)
         seen = measure(time[part], nodes[part], bending_energy[part], rotation_angle[part])
-        late = Late(time[part], nodes[part], bending_energy[part], seen)
+        late = Late(time[part], nodes[part], seen)
         verdict = _verdict(late, fall)
         if verdict.name != UNDECIDED:
             return verdict
@@ -135,26 +134,36 @@ def straight_verdict(time: Instants, nodes: Shapes) -> Verdict | None:
     return fall if isinstance(fall, Verdict) and fall.name == "straight" else None
 
 
-def settle_irregular(verdict: Verdict, exponents: Lyapunov) -> Verdict:
-    """Return the verdict on an irregular motion in the light of its Lyapunov exponents."""
+def with_exponents(verdict: Verdict, exponents: Lyapunov) -> Verdict:
+    """Return a verdict in the light of Lyapunov exponents: what an irregular motion is.
+
+    Of any other motion they tell whether neighbouring ones part, so that it will not last.
+    """
+    value, error = exponents.beyond_symmetry, exponents.beyond_symmetry_error
+    told = f"neighbouring motions part at {value:.3g} +- {error:.1g} /T"
+    known = replace(
+        verdict, evidence=verdict.evidence | {"lyapunov": value, "lyapunov_error": error}
+    )
     late = verdict.late
     if late is None or late.back is None:
-        return verdict
-    value, error = exponents.beyond_symmetry, exponents.beyond_symmetry_error
-    evidence = verdict.evidence | {"lyapunov": value, "lyapunov_error": error}
-    cycle = 1.0 / abs(late.seen.frequency.value) if late.seen.frequency else late.back.period
-    told = f"neighbouring motions part at {value:.3g} +- {error:.1g} /T"
-    if value > SIGNIFICANT * error and value * cycle > LEAST_GROWTH:
-        reason = f"{told}, by exp({value * cycle:.2g}) a cycle"
-        name = Name("chaotic", reason, value / (SIGNIFICANT * error))
-    elif (value + SIGNIFICANT * error) * cycle < LEAST_GROWTH:
-        name = wandering(late)
-    else:
-        return replace(verdict, evidence=evidence, reason=f"irregular, and {told}: run longer")
-    reason = f"{name.reason} ({told})" if name.name != "chaotic" else name.reason
-    return replace(
-        verdict, name=name.name, reason=reason, evidence=evidence, margin=min(MOST, name.margin)
-    )
+        parts = value > SIGNIFICANT * error
+        return replace(known, reason=f"{verdict.reason}; {told}") if parts else known
+    interval = float(late.time[-1] - late.time[0]) / late.back.maxima
+    if value < -SIGNIFICANT * error:
+        # On a torus there is a third exponent of 0, in chaos a positive one.
+        reason = f"irregular so far, but neighbouring motions join at {-value:.3g} /T: run longer"
+        return replace(known, reason=reason, longer=float(np.log(1.0 / RECURRENT)) / -value)
+    if value > SIGNIFICANT * error and value * interval > LEAST_GROWTH:
+        reason = f"irregular: {told}, by exp({value * interval:.2g}) from maximum to maximum"
+        return _named(known, Name("chaotic", reason, value / (SIGNIFICANT * error)))
+    if (value + SIGNIFICANT * error) * interval < LEAST_GROWTH:
+        return _named(known, wandering(late, told))
+    return replace(known, reason=f"irregular, and {told}: run longer")
+
+
+def _named(verdict: Verdict, name: Name) -> Verdict:
+    margin = min(MOST, name.margin)
+    return replace(verdict, name=name.name, reason=name.reason, margin=margin, longer=None)
 
 
 def _fall(time: Instants, nodes: Shapes) -> Straightening | Verdict:
@@ -214,16 +223,21 @@ def _manner(motion: LinearMotion) -> str:
 def _verdict(late: Late, fall: Straightening) -> Verdict:
     """Name what a window shows, or say what is missing."""
     start = float(late.time[0])
-    found = spins(late) or windmills(late) or flaps(late, STATIONARY)
-    if found is None and _seen_enough(late, fall):
+    found = spins(late) or windmills(late) or flaps(late)
+    enough = _seen_enough(late, fall)
+    if found is None and enough:
         found = returning(late)
-    if found is not None and found.margin >= THIN:
-        return Verdict(found.name, found.reason, late.numbers(), start, margin=found.margin)
-    if found is not None:
+    if found is not None and found.unrest:
+        reason = f"{found.name} so far, but {found.unrest}: run longer"
+        span = float(late.time[-1] - late.time[0])
+        return Verdict(UNDECIDED, reason, late.numbers(), start, longer=span)
+    if found is not None and found.margin < THIN:
         reason = f"on the border of {found.name}: {found.reason}"
         return Verdict(UNDECIDED, reason, late.numbers(), start)
-    waits = late if _seen_enough(late, fall) and late.irregular else None
-    reason, longer = _missing(late, fall)
+    if found is not None:
+        return Verdict(found.name, found.reason, late.numbers(), start, margin=found.margin)
+    reason, longer = missing(late, fall)
+    waits = late if enough and late.irregular else None
     return Verdict(UNDECIDED, reason, late.numbers(), start, longer=longer, late=waits)
 
 
@@ -232,49 +246,3 @@ def _seen_enough(late: Late, fall: Straightening) -> bool:
     seen = late.seen
     sampled = seen.samples_per_period >= MIN_SAMPLES_PER_PERIOD
     return not (steady(seen) or fall.falling or seen.growth is not None) and sampled
-
-
-def _missing(late: Late, fall: Straightening) -> tuple[str, float | None]:
-    """Say why there is no verdict, most specific reasons first, and how much longer to run."""
-    seen, span = late.seen, float(late.time[-1] - late.time[0])
-    if steady(seen):
-        turned = f"bent and steady, but seen to turn by only {abs(seen.turns):.2g} of a turn"
-        return f"{turned}: if it is not at rest, run longer", span
-    if fall.falling and fall.motion is not None:
-        so_far = f"{fall.factor:.3g}-fold in all and {fall.late_factor:.3g}-fold in the later half"
-        needed = f"{DECAY_FACTOR:g} and {LATE_FACTOR:g} count as straight"
-        rate = -fall.motion.rate
-        to_go = float(np.log(max(DECAY_FACTOR / fall.factor, LATE_FACTOR))) / rate
-        return f"decaying at rate {rate:.4g}/T, {so_far} ({needed}): run longer", to_go
-    if seen.growth is not None:
-        rate = seen.growth.rate
-        to_go = float(np.log(1.0 / seen.displacement)) / rate
-        return f"still growing from straight at rate {rate:.4g}/T: run longer", to_go
-    if seen.samples_per_period < MIN_SAMPLES_PER_PERIOD:
-        few = f"about {seen.samples_per_period:.2g} samples a period only"
-        return f"{few}: ask for more samples", None
-    if late.irregular and late.back is not None:
-        near = f"{late.back.distance:.2g} of itself after {late.back.every} maxima of its energy"
-        return f"irregular: its shape comes no nearer than {near}: run longer", span
-    if seen.drift > STATIONARY or seen.transient:
-        return _unsettled(seen), span
-    return _few_returns(late), span
-
-
-def _few_returns(late: Late) -> str:
-    """Say what is missing of a motion that does not drift."""
-    back, plane = late.back, late.seen.planarity
-    where = "planar" if plane <= PLANAR_TOLERANCE else f"{plane:.1%} out of plane"
-    if back is None:
-        return f"{where}, but no maxima of its energy show that it repeats itself: run longer"
-    if back.repeats:
-        return f"{where}, but what does not repeat grows {back.growth:.2g}-fold: run longer"
-    seen = f"{back.maxima} maxima of its energy seen, {MANY_MAXIMA} show that it is irregular"
-    return f"{where}, and its shape comes back to {back.distance:.1%} only ({seen}): run longer"
-
-
-def _unsettled(seen: Evidence) -> str:
-    turns = abs(seen.turns)
-    if turns >= 1.0 and seen.transient:
-        return f"the shape still changes by {seen.shape_drift / turns:.2%} per turn: run longer"
-    return f"the motion still changes by {seen.drift:.1%} between halves of the window: run longer"

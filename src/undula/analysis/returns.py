@@ -1,12 +1,14 @@
-"""Does the shape come back? Shapes at successive maxima of the energy, compared up to turns.
+"""Does the shape come back? Shapes where it is farthest from straight, compared up to turns.
 
-In the frame of the motion's own symmetry a state at a maximum of the elastic energy is a point of a
+In the frame of the motion's own symmetry a state at a maximum of the displacement is a point of a
 Poincare section: a motion that is periodic up to a turn visits the same few points again and again,
-one on a torus a curve of them, a chaotic one a cloud.
+one on a torus a curve of them, a chaotic one a cloud. The displacement shows them better than the
+energy, which is made of second differences and so of noise first.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,15 +17,25 @@ from undula.analysis.alignment import aligned_distance
 from undula.analysis.observables import displacement
 from undula.arrays import Array, Instants, Shapes
 
-#: Most maxima of the energy that one period may have.
+#: Most maxima of the displacement that one period may have.
 MOST_MAXIMA = 12
-#: A shape that comes back to within this share of the displacement, does: ten times what the
+#: A maximum rises above the minima beside it by this share of the whole swing; others are noise. If
+#: nothing comes back so, a ripple may be counted at times only: then by the second share.
+PROMINENT = (0.02, 0.2)
+#: A shape that comes back to within this share of the displacement, does: several times what the
 #: interpolation between some 24 samples a beat leaves, and a tenth of what chaotic motions show.
 RECURRENT = 5e-3
 #: A motion has to come back so often to be called periodic.
 FEWEST_REPETITIONS = 3
 #: Distances that grow or shrink by less than this factor over the window keep their size.
 STEADY_FACTOR = 2.0
+#: Distances below this part of what counts are made of errors of integration and interpolation.
+ERRORS = 0.2
+#: Samples beside a maximum that the parabola is laid through, as a part of those between maxima.
+_BESIDE = 1.0 / 16.0
+#: Shift in time by which shapes are compared as well, so that an error in the time of a maximum
+#: does not count, in samples: so little that the shape moves along a straight line.
+_NUDGE = 0.1
 
 
 @dataclass(frozen=True)
@@ -33,13 +45,13 @@ class Recurrence:
     Attributes
     ----------
     maxima
-        Maxima of the energy in the window.
+        Maxima of the displacement in the window.
     every
         Number of maxima after which the shape comes back: the least with which it does, else the
         one with which it comes nearest.
     distance
-        Median distance between a shape and the one that comes back, after the best turn, relative
-        to the displacement.
+        Median distance between a shape and the one that comes back, after the best turn and the
+        best small shift in time, relative to the displacement.
     worst
         The largest of these distances.
     growth
@@ -65,8 +77,8 @@ class Recurrence:
         return enough and self.distance <= RECURRENT and self.worst <= STEADY_FACTOR * RECURRENT
 
 
-def recurrence(time: Instants, nodes: Shapes, bending_energy: Instants) -> Recurrence | None:
-    """Measure how the shape comes back; None with fewer than four maxima of the energy.
+def recurrence(time: Instants, nodes: Shapes) -> Recurrence | None:
+    """Measure how the shape comes back; None with fewer than four maxima of the displacement.
 
     Parameters
     ----------
@@ -74,59 +86,101 @@ def recurrence(time: Instants, nodes: Shapes, bending_energy: Instants) -> Recur
         Equally spaced times [T], shape ``(m,)``.
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
-    bending_energy
-        Bending energy, shape ``(m,)``.
     """
-    at, shapes = energy_maxima(time, nodes, bending_energy)
-    if len(at) < FEWEST_REPETITIONS + 1:
-        return None
-    size = float(np.sqrt(np.mean(displacement(shapes) ** 2))) or 1.0
-    most = min(MOST_MAXIMA, len(at) // (FEWEST_REPETITIONS + 1))
-    found = [_after(every, at, shapes, size) for every in range(1, most + 1)]
-    coming_back = [one for one in found if one.repeats]
-    return coming_back[0] if coming_back else min(found, key=lambda one: one.distance)
+    away = displacement(nodes)
+    size = float(np.sqrt(np.mean(away**2)))
+    nearest = None
+    for prominent in PROMINENT:
+        at, shapes = _farthest(time, nodes, away, prominent * float(np.ptp(away)))
+        most = min(MOST_MAXIMA, len(at) // (FEWEST_REPETITIONS + 1))
+        found = []
+        for every in range(1, most + 1):
+            found.append(_after(every, at, shapes, size))
+            if found[-1].repeats:
+                return found[-1]
+        nearest = nearest or min(found, key=lambda one: one.distance, default=None)
+    return nearest
 
 
-def energy_maxima(
-    time: Instants, nodes: Shapes, bending_energy: Instants
-) -> tuple[Instants, Shapes]:
-    """Return times (k,) and shapes (k, N + 1, 3) at the maxima of the energy between samples.
+def _farthest(
+    time: Instants, nodes: Shapes, away: Array, height: float
+) -> tuple[Instants, Sequence[Shapes]]:
+    """Return times (k,) of the prominent maxima, between samples, and shapes (k, N + 1, 3).
 
-    The time is that of a parabola through the three samples around it, the shape that of the cubic
-    through four.
+    These are at the times and a little before and after. The time is that of the parabola nearest
+    to the samples beside, the shape that of the cubic through four.
     """
-    here = bending_energy[1:-1]
-    top = np.flatnonzero((here >= bending_energy[:-2]) & (here > bending_energy[2:])) + 1
-    top = top[(top >= 2) & (top < len(time) - 2)]
-    before, after = bending_energy[top - 1], bending_energy[top + 1]
-    shift = 0.5 * (after - before) / (2.0 * bending_energy[top] - before - after)
-    first = top - np.where(shift < 0.0, 2, 1)
-    place = top + shift - first
-    cubic = sum(
-        (_lagrange(j, place)[:, None, None] * nodes[first + j] for j in range(4)),
-        start=np.zeros((len(top), *nodes.shape[1:])),
-    )
-    interval = (time[-1] - time[0]) / max(1, len(time) - 1)
-    return np.asarray(time[top] + shift * interval), np.asarray(cubic)
+    top = prominent_maxima(away, height)
+    if len(top) < FEWEST_REPETITIONS + 1:
+        return time[:0], (nodes[:0],) * 3
+    beside = max(1, int(_BESIDE * np.min(np.diff(top))))
+    margin = max(3, beside)
+    top = top[(top >= margin) & (top < len(time) - margin)]
+    place = top + _vertex(away, top, beside)
+    interval = (time[-1] - time[0]) / (len(time) - 1)
+    near = [_between(nodes, place + shift) for shift in (0.0, -_NUDGE, _NUDGE)]
+    return np.asarray(time[0] + place * interval), near
 
 
-def _lagrange(j: int, x: Array) -> Array:
-    """Return the cubic that is 1 at the j-th of 0, 1, 2, 3 and 0 at the others."""
-    value = np.ones_like(x)
-    for other in range(4):
-        if other != j:
-            value = value * (x - other) / (j - other)
-    return value
+def prominent_maxima(values: Array, height: float) -> Array:
+    """Return the indices of maxima that rise by more than a height above the minima beside them.
+
+    Parameters
+    ----------
+    values
+        Samples, shape ``(m,)``.
+    height
+        At least 0.
+    """
+    rises = np.diff(values) > 0.0
+    found: list[int] = []
+    lowest, top = float(values[0]), -1
+    for i in (np.flatnonzero(rises[1:] != rises[:-1]) + 1).tolist():
+        if top < 0:
+            lowest = min(lowest, values[i])
+            top = i if values[i] > lowest + height else -1
+        elif values[i] > values[top]:
+            top = i
+        elif values[i] < values[top] - height:
+            found.append(top)
+            lowest, top = values[i], -1
+    return np.array(found, dtype=int)
 
 
-def _after(every: int, at: Instants, shapes: Shapes, size: float) -> Recurrence:
+def _vertex(values: Array, top: Array, beside: int) -> Array:
+    """Return how far from each sample the parabola through it and its neighbours culminates."""
+    around = np.arange(-beside, beside + 1)
+    square = around**2 - np.mean(around**2)
+    near = values[top[:, None] + around]
+    slope = near @ around / np.sum(around**2)
+    bend = near @ square / np.sum(square**2)
+    vertex = np.divide(-0.5 * slope, bend, out=np.zeros(len(top)), where=bend < 0.0)
+    return np.asarray(np.clip(vertex, -1.0, 1.0))
+
+
+def _between(nodes: Shapes, place: Array) -> Shapes:
+    """Return shapes (k, N + 1, 3) at places between samples, by cubics through four of them."""
+    first = np.floor(place).astype(int) - 1
+    x = place - first
+    shapes = np.zeros((len(place), *nodes.shape[1:]))
+    for j in range(4):
+        weight = np.ones_like(x)
+        for other in range(4):
+            if other != j:
+                weight *= (x - other) / (j - other)
+        shapes += weight[:, None, None] * nodes[first + j]
+    return shapes
+
+
+def _after(every: int, at: Instants, shapes: Sequence[Shapes], size: float) -> Recurrence:
     """Compare each shape with the one so many maxima later."""
-    alignment = aligned_distance(shapes[every:], shapes[:-every])
-    distances = alignment.distance / size
+    there, before, after = (aligned_distance(near[every:], shapes[0][:-every]) for near in shapes)
+    slope, bend = _parabola(before.distance**2, there.distance**2, after.distance**2)
+    gained = np.divide(slope**2, 2.0 * bend, out=np.zeros_like(bend), where=bend > 0.0)
+    distances = np.sqrt(np.maximum(there.distance**2 - gained, 0.0)) / size
     third = max(1, len(distances) // 3)
-    # Below a tenth of what counts, distances are made of errors of integration and interpolation.
     first, last = (
-        max(0.1 * RECURRENT, float(np.median(part)))
+        max(ERRORS * RECURRENT, float(np.median(part)))
         for part in (distances[:third], distances[-third:])
     )
     return Recurrence(
@@ -136,5 +190,10 @@ def _after(every: int, at: Instants, shapes: Shapes, size: float) -> Recurrence:
         worst=float(np.max(distances)),
         growth=last / first,
         period=float(np.median(at[every:] - at[:-every])),
-        turn=float(np.angle(np.mean(np.exp(1j * alignment.angle)))),
+        turn=float(np.angle(np.mean(np.exp(1j * there.angle)))),
     )
+
+
+def _parabola(before: Array, here: Array, after: Array) -> tuple[Array, Array]:
+    """Return slope and second derivative of the parabola through three equally spaced values."""
+    return 0.5 * (after - before), after - 2.0 * here + before

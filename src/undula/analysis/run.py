@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any, Self
 
 from undula.analysis.close_up import close_up
+from undula.analysis.finite_separation import Separation
 from undula.analysis.frequency import (
     Frequency,
     rotation_frequency,
@@ -23,6 +24,7 @@ from undula.analysis.settling import Settled
 from undula.analysis.simulation import Simulation
 from undula.arrays import Array
 from undula.models.model import Model
+from undula.numerics.system import RATES
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,7 @@ class Run:
             self.model,
             self.schedule,
             (self.motion, self.close_up),
+            self.checkpoint["states"][-1, :-RATES],
             self.settled,
             self.exponents,
         )
@@ -96,6 +99,11 @@ class Run:
     def lyapunov(self) -> Lyapunov | None:
         """Lyapunov exponents, if they were asked for or it took them to tell what the motion is."""
         return self._judged.exponents
+
+    @property
+    def separation(self) -> Separation | None:
+        """How fast runs from nearby states part, if Lyapunov exponents were asked for."""
+        return self._judged.separation
 
     @cached_property
     def window(self) -> Motion:
@@ -143,7 +151,8 @@ class Run:
             "evidence": self.verdict.evidence,
             "margin": self.verdict.margin,
             "longer": self.verdict.longer,
-            "lyapunov": _exponents(self.lyapunov),
+            "lyapunov": _exponents(self.lyapunov, self.separation),
+            "without_lyapunov": self._judged.without or None,
             "frequency": _value(self.frequency, sign=False),
             "frequency_error": _error(self.frequency),
             "rotation_frequency": _value(self.rotation_frequency),
@@ -173,9 +182,10 @@ class Run:
         )
 
 
-def _exponents(found: Lyapunov | None) -> dict[str, Any] | None:
+def _exponents(found: Lyapunov | None, pairs: Separation | None) -> dict[str, Any] | None:
     if found is None:
         return None
+    parting = pairs and {"rate": pairs.rate, "error": pairs.error, "saturated": pairs.saturated}
     return {
         "value": found.value,
         "error": found.error,
@@ -185,6 +195,7 @@ def _exponents(found: Lyapunov | None) -> dict[str, Any] | None:
         "errors": found.errors.tolist(),
         "symmetries": found.symmetries,
         "duration": found.duration,
+        "finite_separation": parting,
     }
 
 

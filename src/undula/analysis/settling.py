@@ -41,6 +41,8 @@ MOST_MAXIMA = 8
 MOST_LOOKS = 1000
 #: A decay by less than this a repetition is none.
 SLOWEST_DECAY = 0.999
+#: Changes that add up to this part of their sum or more have one direction: they are no noise.
+DIRECTED = 0.7
 #: A shape that moves by less than this part of the displacement in a period is on its way to rest.
 LEAST_SWING = 0.02
 
@@ -163,11 +165,9 @@ class Watch:
             returns = list(self.returns)[-(REPETITIONS + 1) * lag :: lag]
             if len(returns) < REPETITIONS + 1:
                 return None
-            changes = [
-                float(aligned_distance(earlier, later).distance / displacement(later))
-                for (_, earlier), (_, later) in pairwise(returns)
-            ]
-            remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol)
+            changes = [_change(earlier, later) for earlier, later in pairwise(returns)]
+            directed = _change(returns[0], returns[-1]) > DIRECTED * sum(changes)
+            remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol, directed=directed)
             if remaining is not None:
                 times = [time for time, _ in returns]
                 period = (times[-1] - times[0]) / (len(times) - 1)
@@ -178,14 +178,22 @@ class Watch:
         return None
 
 
-def _still_to_come(changes: Sequence[float], spans: float, rtol: float) -> float | None:
+def _change(earlier: tuple[float, Nodes], later: tuple[float, Nodes]) -> float:
+    """Return by how much the shape changes from one return to another, relative to its size."""
+    return float(aligned_distance(earlier[1], later[1]).distance / displacement(later[1]))
+
+
+def _still_to_come(
+    changes: Sequence[float], spans: float, rtol: float, *, directed: bool = False
+) -> float | None:
     """Return the sum of all changes to come, each a repetition apart; None if it is too large.
 
-    `spans` is the number of repetitions from the first to the last of `changes`.
+    `spans` is the number of repetitions from the first to the last of `changes`; `directed` tells
+    that they add up, so that even small ones are no noise.
     """
     if max(changes) > TOLERANCE_IN_RTOL * rtol:
         return None
-    if max(changes) <= NOISE_IN_RTOL * rtol:
+    if max(changes) <= NOISE_IN_RTOL * rtol and not directed:
         return max(changes)
     if changes[-1] == 0.0:
         return 0.0

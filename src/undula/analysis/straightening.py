@@ -22,6 +22,8 @@ FALLING_FACTOR = 1.2
 # Rates of the two halves of the later part may differ from the whole by this share: a decay that
 # levels off at a small motion, or speeds up, differs by more.
 RATE_AGREEMENT = 0.3
+# A peak in this last part of the run leaves too little to see a fall in: it may be a swing's.
+PEAK_SHARE = 0.25
 # The end of the run is its last tenth: one sample could sit in a swing's turning point.
 END_SHARE = 0.1
 
@@ -39,7 +41,8 @@ class Straightening:
     start
         First sample of that later half.
     time, nodes
-        Times [T] and nodes [L] of that later half.
+        Times [T] and nodes [L] of that later half; none if the peak is in the last quarter of the
+        run.
     """
 
     factor: float
@@ -97,7 +100,7 @@ def straightening(time: Instants, nodes: Shapes) -> Straightening:
     stop = int(np.count_nonzero(ahead > FLOOR * ahead[peak]))
     start = (peak + stop) // 2
     end = len(time) - max(1, round(END_SHARE * len(time)))
-    late = slice(start, stop)
+    late = slice(start, stop if peak < (1.0 - PEAK_SHARE) * len(time) else start)
     return Straightening(
         factor=_ratio(ahead[peak], ahead[end]),
         late_factor=_ratio(ahead[start], ahead[stop - 1]) if start < stop else 1.0,

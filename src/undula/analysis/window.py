@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from undula.analysis.frequency import whole_motion_frequency
-from undula.analysis.observables import displacement, tip_height
-from undula.analysis.spectral import hann
+from undula.analysis.observables import displacement, mean_position, tip_height, transverse
+from undula.analysis.spectral import hann, spectral_peak
 from undula.arrays import Array, Instants, Shapes
 
 # Shares of the run tried as the window, longest first: beyond a half the start is always in view,
@@ -86,5 +85,6 @@ def _half_difference(values: Array) -> float:
 
 
 def _periods(time: Instants, nodes: Shapes) -> float:
-    found = whole_motion_frequency(time, nodes)
-    return abs(found.value) * float(time[-1] - time[0]) if found else 0.0
+    """Return how often the strongest line of the mean position's spectrum repeats."""
+    line = spectral_peak(time, transverse(mean_position(nodes))[:, None])
+    return abs(line) * float(time[-1] - time[0])

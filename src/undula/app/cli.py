@@ -16,6 +16,7 @@ from undula.app.options import (
     NoMovie,
     Overwrite,
     Result,
+    WithLyapunov,
     seconds_of,
 )
 from undula.app.questions import find, follow, stability, threshold
@@ -93,6 +94,7 @@ def run(
     overwrite: Overwrite = False,
     no_movie: NoMovie = False,
     budget: Budget = None,
+    lyapunov: WithLyapunov = False,
     as_json: Json = False,
 ) -> int:
     """Integrate a filament in time, judge its motion, store and draw it.
@@ -108,7 +110,7 @@ def run(
     result = (out or Path("results") / (file.stem if file else "run")) / "run.nc"
     claim_output(result, overwrite=overwrite)
     job = begin(wanted, result)
-    return finish(job, budget=seconds, with_movie=not no_movie, as_json=as_json)
+    return finish(job, budget=seconds, with_movie=not no_movie, lyapunov=lyapunov, as_json=as_json)
 
 
 @app.command()
@@ -122,6 +124,7 @@ def resume(
     ] = None,
     no_movie: NoMovie = False,
     budget: Budget = None,
+    lyapunov: WithLyapunov = False,
     as_json: Json = False,
 ) -> int:
     """Go on where a run ended, in the same file; figure and movie are drawn anew."""
@@ -132,7 +135,7 @@ def resume(
     seconds = seconds_of(budget)
     job = take_up(result, until)
     claim_output(result, overwrite=True)
-    return finish(job, budget=seconds, with_movie=not no_movie, as_json=as_json)
+    return finish(job, budget=seconds, with_movie=not no_movie, lyapunov=lyapunov, as_json=as_json)
 
 
 @app.command()

@@ -15,10 +15,10 @@ from undula.app.running import compute
 from undula.errors import InputError
 from undula.studies.store import load_result
 
-_ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.LIMIT)
+_ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.IRREGULAR, Ending.LIMIT)
 
 
-def finish(job: Job, *, budget: float, with_movie: bool, as_json: bool) -> int:
+def finish(job: Job, *, budget: float, with_movie: bool, lyapunov: bool, as_json: bool) -> int:
     """Carry a run to its end, draw it, and answer.
 
     Parameters
@@ -29,6 +29,8 @@ def finish(job: Job, *, budget: float, with_movie: bool, as_json: bool) -> int:
         Seconds after which it is ended with what it has.
     with_movie
         Whether to make a movie of a run that has come to its end.
+    lyapunov
+        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
     as_json
         Whether to answer in JSON.
 
@@ -37,7 +39,7 @@ def finish(job: Job, *, budget: float, with_movie: bool, as_json: bool) -> int:
     int
         The exit status: 0 if all was done, 3 if not, the result being kept.
     """
-    seconds = compute(job, budget)
+    seconds = compute(job, budget, lyapunov=lyapunov)
     if job.replaces:
         _remove_older_views(job.result)
     stopped = job.simulation.ending in (Ending.INTERRUPTED, Ending.OUT_OF_TIME)

@@ -20,6 +20,10 @@ Plot = Annotated[Path | None, typer.Option(metavar="FILE", help="Figure: .png, .
 Converge = Annotated[
     bool, typer.Option("--converge", help="Extrapolate to many links, with the error.")
 ]
+WithLyapunov = Annotated[
+    bool,
+    typer.Option("--lyapunov", help="Compute Lyapunov exponents, of a regular motion as well."),
+]
 NoMovie = Annotated[bool, typer.Option("--no-movie", help="Make no movie.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what exists.")]
 Budget = Annotated[

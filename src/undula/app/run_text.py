@@ -30,6 +30,7 @@ def _lines(answer: Answer) -> Iterator[tuple[str, str]]:
     yield "frequency", _frequency(answer, "frequency")
     yield "rotation", _frequency(answer, "rotation_frequency")
     yield "shape", _frequency(answer, "shape_frequency")
+    yield "Lyapunov", _lyapunov(answer)
     yield "bending energy", _span(answer["bending_energy"], answer["units"]["energy"])
     yield "tip radius", _span(answer["tip_radius"], "L")
     yield "tip height", _span(answer["tip_height"], "L")
@@ -53,6 +54,17 @@ def _frequency(answer: Answer, name: str) -> str:
     if value is None:
         return ""
     return f"{with_error(value, error)} cycles per T"
+
+
+def _lyapunov(answer: Answer) -> str:
+    """Tell the largest exponent, the one beyond the symmetries, and what pairs of runs show."""
+    found = answer["lyapunov"]
+    if found is None:
+        return f"none: {answer['without_lyapunov']}" if answer["without_lyapunov"] else ""
+    beyond = with_error(found["beyond_symmetry"], found["beyond_symmetry_error"])
+    told = f"{with_error(found['value'], found['error'])} /T, {beyond} /T symmetry aside"
+    pairs = found["finite_separation"]
+    return f"{told}; runs part at {with_error(pairs['rate'], pairs['error'])} /T" if pairs else told
 
 
 def with_error(value: float, error: float | None) -> str:

@@ -4,8 +4,10 @@ import time
 from dataclasses import dataclass, field
 
 from undula.analysis.integrate import Progress, carry_on
+from undula.analysis.judging import Exponents
 from undula.analysis.record import dataset_of
 from undula.analysis.run import Run
+from undula.analysis.schedule import Ending
 from undula.app.answers import notice
 from undula.app.compiling import compilation_announced
 from undula.app.jobs import Job
@@ -18,9 +20,11 @@ from undula.studies.store import write_run
 SAVE_EVERY = 20.0
 #: Writing takes at most this part of the time: a long run has a large file.
 SAVING_SHARE = 0.1
+#: Runs that ended so are not looked at any longer.
+_CUT_SHORT = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
 
 
-def compute(job: Job, budget: float) -> float:
+def compute(job: Job, budget: float, *, lyapunov: bool) -> float:
     """Carry a run on to its end, or until Ctrl-C or the budget stops it, and store its result.
 
     Parameters
@@ -29,6 +33,8 @@ def compute(job: Job, budget: float) -> float:
         The run; its file is replaced, every now and then and at the end.
     budget
         Seconds after which the run is ended with what it has.
+    lyapunov
+        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
 
     Returns
     -------
@@ -42,14 +48,19 @@ def compute(job: Job, budget: float) -> float:
     """
     begun = time.monotonic()
     with meter("running") as show, compilation_announced(notice):
-        carry_on(job.simulation, budget=budget, progress=_Watcher(job, show))
-    store(job)
+        judged = carry_on(job.simulation, budget=budget, progress=_Watcher(job, show))
+    judged = judged or Run.of(job.simulation, Exponents.NEVER)
+    store(job, judged)  # exponents may take long, and Ctrl-C may end that
+    wanted = lyapunov or (judged.lyapunov is None and judged.verdict.late is not None)
+    if wanted and job.simulation.ending not in _CUT_SHORT:
+        exponents = Exponents.ALWAYS if lyapunov else Exponents.IF_IRREGULAR
+        with compilation_announced(notice):
+            store(job, Run.of(job.simulation, exponents))
     return time.monotonic() - begun
 
 
-def store(job: Job) -> None:
+def store(job: Job, run: Run) -> None:
     """Write the result that a run has come to so far, whole."""
-    run = Run.of(job.simulation)
     dataset = dataset_of(run, inputs=job.wanted.dump(), load=job.wanted.load_text)
     write_run(job.result, dataset, run.checkpoint, overwrite=True)
 
@@ -75,7 +86,7 @@ class _Watcher:
         """Store the result so far; return the seconds it took. The run outlives a full disk."""
         begun = time.monotonic()
         try:
-            store(self.job)
+            store(self.job, Run.of(self.job.simulation, Exponents.NEVER))
         except InputError as error:
             notice(f"the result so far is not stored: {error}")
         return time.monotonic() - begun

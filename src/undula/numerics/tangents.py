@@ -19,12 +19,13 @@ import numpy as np
 from undula.compiled import entry, kernel
 from undula.numerics.control import rescale
 from undula.numerics.integrate import take_step
-from undula.numerics.memory import ORDER, STEP, STORING_RATE, TIME
+from undula.numerics.memory import ORDER, STEP, TIME
 from undula.numerics.results import Status
 from undula.numerics.stepping import workspace
 from undula.numerics.system import derivative, factor_derivative, solve_derivative, weigh
 
-_DONE, _NOT_FINITE = Status.DONE.value, Status.NOT_FINITE.value
+_DONE, _PAUSED = Status.DONE.value, Status.PAUSED.value
+_NOT_FINITE = Status.NOT_FINITE.value
 
 
 @kernel
@@ -61,7 +62,7 @@ def carry(
 
 @entry
 def advance_with_changes(
-    system: Any, memory: Any, options: Any, changes: Any, band: Any, end: Any
+    system: Any, memory: Any, options: Any, changes: Any, band: Any, end: Any, most_steps: Any
 ) -> Any:
     """Step on until `end` is reached or passed, and carry small changes along.
 
@@ -74,29 +75,31 @@ def advance_with_changes(
     band : ndarray, shape (n, 2 b + 1)
         Scratch for the derivative, b its half-bandwidth.
     end : float
+    most_steps : int
+        The loop comes back after so many steps.
 
     Returns
     -------
-    status, maxima : int
-        A `Status` value, and how often the stored energy passed a maximum.
+    status : int
+        A `Status` value.
     """
     n = memory.factored_at.shape[0]
-    work, scratch, maxima = workspace(n), np.zeros((3, n)), 0
+    work, scratch, taken = workspace(n), np.zeros((3, n)), 0
     while memory.real[TIME] < end:
+        if taken == most_steps:
+            return _PAUSED
         before = memory.real[STEP]
         status = take_step(system, memory, options, work)
         if status != _DONE:
-            return status, maxima
+            return status
+        taken += 1
         order, ratio = memory.count[ORDER], memory.real[STEP] / before
         c = memory.real[STEP] / options.alpha[order]
         derivative(system, work.y, work.w, c, 0.0, band)
         if not factor_derivative(system, band):
-            return _NOT_FINITE, maxima
+            return _NOT_FINITE
         for k in range(changes.shape[0]):
             if ratio != 1.0:
                 rescale(changes[k], order, ratio)
             carry(system, memory, options, work, changes[k], band, scratch)
-        storing = work.change[n + 1] - work.change[n + 2] + work.psi[n + 1] - work.psi[n + 2]
-        maxima += memory.real[STORING_RATE] > 0.0 >= storing
-        memory.real[STORING_RATE] = storing
-    return _DONE, maxima
+    return _DONE
