@@ -18,7 +18,7 @@ from undula.analysis.linear_results import Crossing, Onset
 from undula.analysis.stable_stretches import Stretches, straight_stretches
 from undula.analysis.states import Flapping, Spinning
 from undula.analysis.thresholds import threshold
-from undula.studies.borders_store import NAME, keep_borders, kept_borders
+from undula.studies.borders_store import NAME, keep_borders, kept_columns
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 LOW = un.Filament(segments=8, load=un.PointLoad(75.0, position=0.4))
@@ -264,26 +264,28 @@ def test_borders_over_no_axis_of_the_store_are_refused() -> None:
 
 def test_borders_are_kept_and_read_again(tmp_path: Path) -> None:
     store = sweep()
-    assert kept_borders(tmp_path, store) is None
+    assert kept_columns(tmp_path, store) == []
     for borders in (of_eight(), over_position(), made_borders()):
         keep_borders(tmp_path, store, borders)
-        found = kept_borders(tmp_path, store)
-        assert found is not None
-        # NaN, which stands for no value, is equal to nothing.
-        assert found.columns == borders.columns
-        assert (found.parameter, found.up_to) == (borders.parameter, borders.up_to)
-        assert np.array_equal(found.values, borders.values, equal_nan=True)
+        assert tuple(kept_columns(tmp_path, store)) == borders.columns
+
+
+def test_columns_are_kept_before_all_of_them_are_there(tmp_path: Path) -> None:
+    borders = over_position()
+    some = [None, *borders.columns[1:]]
+    keep_borders(tmp_path, sweep(), replace(borders, columns=()), some)
+    assert kept_columns(tmp_path, sweep()) == some
 
 
 @pytest.mark.parametrize("content", ["", "{", "[1]", '{"about": {}}'])
 def test_kept_borders_of_something_else_are_passed_over(tmp_path: Path, content: str) -> None:
     (tmp_path / NAME).write_text(content, encoding="utf-8")
-    assert kept_borders(tmp_path, sweep()) is None
+    assert kept_columns(tmp_path, sweep()) == []
 
 
 def test_borders_of_another_study_are_not_used(tmp_path: Path) -> None:
     keep_borders(tmp_path, sweep(), made_borders())
     other = sweep().assign_attrs(study='{"model": {"segments": 20}}')
-    assert kept_borders(tmp_path, other) is None
+    assert kept_columns(tmp_path, other) == []
     part = sweep().isel({"load.force": slice(0, 3)})
-    assert kept_borders(tmp_path, part) is None
+    assert kept_columns(tmp_path, part) == []

@@ -134,15 +134,19 @@ def solved_borders(
     taken = (float("nan"),) if parameter is None else tuple(float(value) for value in values)
     columns = []
     for done, value in enumerate(taken, start=1):
-        columns.append(_column(model, parameter, value, up_to))
+        columns.append(border_column(model, parameter, value, up_to))
         if progress:
             progress(done, len(taken))
     return Borders(parameter, taken, float(up_to), tuple(columns))
 
 
-def _column(
+def border_column(
     model: Model, parameter: str | None, value: float, up_to: float
 ) -> dict[str, Stretches]:
+    """Return what is known of "straight", "spinning" and "flapping" at one value of a parameter.
+
+    Arguments are those of `solved_borders`.
+    """
     try:
         there = model if parameter is None else changed(model, parameter, value)
         # The runs of a diagram are of links as they are, and so are the other borders.

@@ -9,17 +9,15 @@ import numpy as np
 import xarray as xr
 
 from undula.analysis.basins import basins
-from undula.analysis.borders import BORDERS, Borders, solved_borders
+from undula.analysis.borders import BORDERS, Borders
 from undula.analysis.disagreements import Disagreement, disagreements
 from undula.analysis.parameters import FORCE
-from undula.analysis.sweep_points import TRY, axes_of, chosen, varied
-from undula.app.answers import DONE, notice, reply
-from undula.app.compiling import compilation_announced
+from undula.analysis.sweep_points import TRY, chosen, varied
+from undula.app.answers import DONE, STOPPED_EARLY, reply
+from undula.app.bordering import borders_of
 from undula.app.diagram_text import diagram_answer, diagram_text
 from undula.app.drawing import FORMATS, check_figure_name, save_figure
-from undula.app.progress import counted
 from undula.errors import InputError
-from undula.studies.borders_store import keep_borders, kept_borders, model_of
 from undula.studies.ranges import parse_axis
 from undula.studies.study_store import load_study
 from undula.studies.whole_file import claim_output, write_whole
@@ -54,7 +52,10 @@ def plot_study(path: Path, asked: Asked, *, as_json: bool) -> int:
     store = _part(path, asked, with_shapes=figure.suffix == _PAGE or asked.view in VIEWS[1:3])
     replaces = asked.overwrite or asked.out is None
     claim_output(figure, overwrite=replaces)
-    found = _borders(path, store) if asked.borders else None
+    found = borders_of(path, store) if asked.borders else None
+    if asked.borders and found is None:
+        reply({"status": "interrupted", "store": str(path)}, "", as_json=as_json)
+        return STOPPED_EARLY
     wrong = disagreements(store, found) if found else ()
     _draw(store, asked.view, found, wrong, figure, overwrite=replaces)
     shares = basins(store) if store.sizes[TRY] > 1 else None
@@ -99,30 +100,6 @@ def _chosen_value(text: str) -> tuple[str, float]:
     if len(values) != 1:
         raise InputError(f"--at {text} has {len(values)} values; give one of the axis {name}")
     return name, values[0]
-
-
-def _borders(path: Path, store: xr.Dataset) -> Borders:
-    """Return the borders of a study, solved for unless they are kept beside it."""
-    if FORCE not in axes_of(store):
-        raise InputError(
-            f"--borders are values of {FORCE}, which {path} does not vary; leave them out"
-        )
-    kept = kept_borders(path, store)
-    if kept is not None:
-        return kept
-    parameter = next((name for name in varied(store) if _is_of_the_model(name)), None)
-    values = () if parameter is None else store[parameter].values.tolist()
-    with counted("solving for borders") as tell, compilation_announced(notice):
-        found = solved_borders(
-            model_of(store), parameter, values, float(store[FORCE].values.max()), progress=tell
-        )
-    keep_borders(path, store, found)
-    return found
-
-
-def _is_of_the_model(name: str) -> bool:
-    """Tell whether an axis changes the model: starts and times do not move its borders."""
-    return name != FORCE and name.split(".")[0] in ("model", "load")
 
 
 def _draw(

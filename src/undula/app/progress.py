@@ -44,7 +44,9 @@ def stepped(task: str, parameter: str, done: int, total: int) -> Iterator[Callab
 
 
 @contextmanager
-def swept(task: str, total: int, left: int) -> Iterator[Callable[[int, int], None]]:
+def swept(
+    task: str, total: int, left: int, things: str = "points"
+) -> Iterator[Callable[[int, int], None]]:
     """Yield a function to be called with the number of points that are left and that have failed.
 
     So many of all are left at the beginning; how long those before took says nothing of them.
@@ -53,7 +55,7 @@ def swept(task: str, total: int, left: int) -> Iterator[Callable[[int, int], Non
     with meter(task) as show:
 
         def tell(now: int, failed: int) -> None:
-            words = f"{total - now} of {total} points" + (f" ({failed} failed)" if failed else "")
+            words = f"{total - now} of {total} {things}" + (f" ({failed} failed)" if failed else "")
             if now < left:
                 to_go = (time.monotonic() - began) * now / (left - now)
                 words += f", {duration(to_go)} to go"

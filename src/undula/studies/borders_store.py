@@ -1,11 +1,12 @@
 """Solved borders kept beside a stored study, to be used again as long as they are of the same one.
 
-They are one file of JSON, whole or not at all, that says what it is about.
+They are one file of JSON, whole or not at all, that says what it is about. It is written anew with
+every column, so that what was solved for is never lost.
 """
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,10 +14,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from undula.analysis.borders import Borders
+from undula.analysis.borders import Borders, border_column
 from undula.analysis.stable_stretches import Change, Stretches
 from undula.analysis.sweep_points import axes_of
-from undula.models.model import Model
 from undula.studies.build import build_model
 from undula.studies.point import software
 from undula.studies.spec import parse_input
@@ -27,50 +27,73 @@ from undula.studies.whole_file import write_whole
 NAME = "borders.json"
 _CHANGES = ("fold", "gained", "lost")
 
+#: What is known of each kind of state at one value of the parameter.
+Column = Mapping[str, Stretches]
 
-def model_of(store: xr.Dataset) -> Model:
-    """Return the model of the first point of a stored study, or of what was chosen of it."""
+
+def tables_of(store: xr.Dataset) -> dict[str, Any]:
+    """Return the input of the first point of a stored study, or of what was chosen of it."""
     study = of_dump(json.loads(store.attrs["study"]))
     first = [
         int(np.argmax(np.array(axis.values) == store[axis.key].values.flat[0]))
         for axis in study.axes
     ]
     number = int(np.ravel_multi_index([*first, 0], study.shape))
-    return build_model(parse_input(study.tables(number)))
+    return study.tables(number)
 
 
-def kept_borders(path: Path, store: xr.Dataset) -> Borders | None:
-    """Return the borders that are kept beside a study, None if they are of something else."""
+def columns_of(jobs: Sequence[Mapping[str, Any]]) -> list[Column]:
+    """Return columns of borders, solved for by a worker.
+
+    Each job holds the `tables` of an input, and `parameter`, `value` and `up_to`.
+    """
+    columns: list[Column] = []
+    for job in jobs:
+        model = build_model(parse_input(job["tables"]))
+        columns.append(border_column(model, job["parameter"], job["value"], job["up_to"]))
+    return columns
+
+
+def kept_columns(path: Path, store: xr.Dataset) -> list[Column | None]:
+    """Return the columns that are kept beside a study, None for those still to be solved for.
+
+    There are none at all if what is kept is of something else.
+    """
     try:
         kept = json.loads((path / NAME).read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        return None
+        return []
     if not isinstance(kept, dict) or kept.get("about") != _about(store):
-        return None
-    return _read(kept["borders"])
+        return []
+    return [column and _read(column) for column in kept["borders"]["columns"]]
 
 
-def keep_borders(path: Path, store: xr.Dataset, borders: Borders) -> None:
+def keep_borders(
+    path: Path, store: xr.Dataset, borders: Borders, columns: Sequence[Column | None] = ()
+) -> None:
     """Write borders beside a study, in place of any earlier ones.
+
+    Where not all of them are there yet, `columns` are given apart, None for what is missing.
 
     Raises
     ------
     InputError
         The folder cannot be written or is full.
     """
-    content = {"about": _about(store), "borders": told(borders)}
+    content = {"about": _about(store), "borders": told(borders, columns)}
     image = json.dumps(content, indent=1, allow_nan=False).encode()
     write_whole(path / NAME, image, overwrite=True)
 
 
-def told(borders: Borders) -> dict[str, Any]:
+def told(borders: Borders, columns: Sequence[Column | None]) -> dict[str, Any]:
     """Return borders in plain JSON types, null in place of what is not finite."""
     plain = {
         "parameter": borders.parameter,
         "values": list(borders.values),
         "up_to": borders.up_to,
         "columns": [
-            {kind: asdict(state) for kind, state in column.items()} for column in borders.columns
+            None if column is None else {kind: asdict(state) for kind, state in column.items()}
+            for column in columns or borders.columns
         ],
     }
     return _finite(plain)  # type: ignore[no-any-return]
@@ -82,16 +105,8 @@ def _about(store: xr.Dataset) -> dict[str, Any]:
     return {"study": json.loads(store.attrs["study"]), "values": chosen, "undula": software()}
 
 
-def _read(kept: Mapping[str, Any]) -> Borders:
-    return Borders(
-        kept["parameter"],
-        tuple(math.nan if value is None else value for value in kept["values"]),
-        kept["up_to"],
-        tuple(
-            {kind: _stretches(state) for kind, state in column.items()}
-            for column in kept["columns"]
-        ),
-    )
+def _read(column: Mapping[str, Any]) -> Column:
+    return {kind: _stretches(state) for kind, state in column.items()}
 
 
 def _stretches(kept: Mapping[str, Any]) -> Stretches:
