@@ -42,7 +42,7 @@ def study_of(folder: Path, text: str, *changes: str) -> Study:
 
 def work_off(work: SweepWork, study: Study, most: int | None = None) -> list[Piece]:
     """Do so many pieces of a study in this process, all by default; return them."""
-    each = line if study.policy == "neighbour" else points
+    each = line if study.whole_lines else points
     pieces: list[Piece] = []
     while (most is None or len(pieces) < most) and (piece := work.take()) is not None:
         work.take_back(piece, each([study.job(number) for number in piece.numbers])[1])

@@ -15,6 +15,7 @@ import pytest
 import xarray as xr
 
 from refusal import complaint
+from undula.analysis.last_period import SHAPES
 from undula.analysis.regime_changes import (
     Hysteresis,
     RegimeChange,
@@ -24,7 +25,7 @@ from undula.analysis.regime_changes import (
     regimes,
 )
 from undula.analysis.schedule import Schedule
-from undula.analysis.settle_and_step import SHAPES, Course, Step, settle_and_step
+from undula.analysis.settle_and_step import Course, Step, settle_and_step
 from undula.app import stepping
 from undula.app.cli import main
 from undula.models.chain import Chain

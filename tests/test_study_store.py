@@ -29,7 +29,7 @@ from undula.app.sweep_text import study_answer
 from undula.app.sweep_work import SweepWork
 from undula.studies.blocks import MOST
 from undula.studies.build import build_model, build_start
-from undula.studies.point import point
+from undula.studies.point import point, points
 from undula.studies.spec import parse_input
 from undula.studies.study_store import load_study, open_study
 
@@ -108,6 +108,50 @@ def test_whole_runs_are_files_that_every_command_reads(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         xr.open_zarr(tmp_path / "s.zarr")
+
+
+def test_a_piece_that_takes_too_long_comes_back_in_part_and_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = study_of(tmp_path, QUICK + AXES)
+    at_once = done(study, tmp_path / "at-once.zarr")
+    # Every point takes longer than a piece should.
+    monkeypatch.setattr("undula.studies.point.PIECE_SECONDS", 0.0)
+    assert len(points([study.job(number) for number in range(5)])[1]) == 1
+    assert differing(done(study, tmp_path / "in-part.zarr"), at_once) == []
+
+
+SOLVED = """
+[model]
+segments = 6
+[load]
+profile = "power"
+[study]
+label = "solved"
+"""
+
+
+def test_solved_states_of_a_line_are_those_of_its_points(tmp_path: Path) -> None:
+    study = study_of(tmp_path, SOLVED + AXES)
+    assert study.whole_lines
+    line = done(study, tmp_path / "line.zarr")
+    assert set(line["verdict"].values.ravel()) >= {"straight", "spinning"}
+    for number in (1, 3, 9):
+        alone, place = point(study.job(number)), study.place(number)
+        assert line["verdict"].values[place] == alone["verdict"]
+        # Both are solved for to some 1e-8.
+        assert line["frequency"].values[place] == pytest.approx(alone["frequency"], rel=1e-6)
+
+
+def test_a_line_of_solved_states_in_which_a_point_fails_keeps_the_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: Any) -> None:
+        raise ArithmeticError("no branch")
+
+    monkeypatch.setattr("undula.studies.point.solved_line", fails)
+    found = done(study_of(tmp_path, SOLVED + AXES), tmp_path / "s.zarr")
+    assert (found["status"] == 1).all()
 
 
 @pytest.mark.usefixtures("small_blocks")

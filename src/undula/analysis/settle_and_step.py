@@ -17,19 +17,15 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.integrate import Progress, integrate
-from undula.analysis.motion import Motion
-from undula.analysis.observables import Range, mean_position, transverse
+from undula.analysis.last_period import last_period
+from undula.analysis.observables import Range
 from undula.analysis.parameters import changed, value_of
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending, Schedule
-from undula.analysis.spectral import spectral_peak
-from undula.arrays import Array, Instants, Nodes, Shapes, State
+from undula.arrays import Instants, Nodes, Shapes, State
 from undula.errors import InputError, is_number
 from undula.models.model import Model
-from undula.models.starts import kicked
-
-#: Shapes of each step that are kept to be drawn over one another.
-SHAPES = 24
+from undula.models.starts import turned
 
 
 @dataclass(frozen=True)
@@ -123,9 +119,9 @@ class Step:
         Wall time of it.
     nodes : ndarray, shape (N + 1, 3)
         Where it ended [L].
-    shape_times : ndarray, shape (SHAPES,)
+    shape_times : ndarray, shape (m,)
         Times of the shapes [T].
-    shapes : ndarray, shape (SHAPES, N + 1, 3)
+    shapes : ndarray, shape (m, N + 1, 3)
         Samples about evenly over the last period [L]; of a motion without one over the period of
         the strongest line of its spectrum, and of a straight one over the whole window.
     """
@@ -209,27 +205,16 @@ def settle_and_step(
 
 
 def _turned(model: Model, nodes: Nodes, course: Course, number: int) -> State:
-    """Return the state with these nodes and links turned by the kick of a step.
-
-    The kick is the smooth random shape that starts are made of: each link is turned as the axis is
-    turned to become that shape's tangent. So links keep their length, and a plane is not left.
-    """
+    """Return the state with these nodes and links turned by the kick of a step."""
     if course.kick == 0.0:
         return model.from_nodes(nodes)
     # A seed of its own for each step, so that a series can be taken up at any of them.
     own = np.random.SeedSequence((course.seed, number)).generate_state(1, np.uint64)[0]
-    bend = model.nodes(kicked(model, course.kick, seed=int(own)))
-    tangents = np.diff(bend, axis=0) / np.linalg.norm(np.diff(bend, axis=0), axis=1, keepdims=True)
-    axis = np.cross([0.0, 0.0, 1.0], tangents)
-    links = np.diff(nodes, axis=0)
-    once = np.cross(axis, links)
-    # Rodrigues' formula with the sine in the axis; tangents are at most pi/2 from upright.
-    links = links + once + np.cross(axis, once) / (1.0 + tangents[:, 2:])
-    return model.from_nodes(np.concatenate([nodes[:1], np.cumsum(links, axis=0)]))
+    return turned(model, nodes, course.kick, seed=int(own))
 
 
 def _step(run: Run, value: float, direction: str, began: float) -> Step:
-    told, (times, shapes) = run.summary(), _shapes(run)
+    told, (times, shapes) = run.summary(), last_period(run)
     # A step has the figures of a run's summary under the same names.
     same = {field.name: told[field.name] for field in fields(Step) if field.name in told}
     absent = {name: math.nan for name, figure in same.items() if figure is None}
@@ -244,24 +229,3 @@ def _step(run: Run, value: float, direction: str, began: float) -> Step:
         "shapes": shapes,
     }
     return Step(**(same | absent | ranges | own))
-
-
-def _shapes(run: Run) -> tuple[Instants, Shapes]:
-    """Return samples of the last period of a run, the last one among them."""
-    late = run.window
-    length = float(late.time[-1] - late.time[0])
-    period = length if run.verdict.name == "straight" else min(length, _period(run, late))
-    wanted: Array = late.time[-1] - period * np.arange(SHAPES - 1, -1, -1) / SHAPES
-    nearest = np.rint(np.interp(wanted, late.time, np.arange(late.time.size))).astype(int)
-    return late.time[nearest], late.nodes[nearest]
-
-
-def _period(run: Run, late: Motion) -> float:
-    """Return the period of the motion, or what comes nearest to one; infinite without any."""
-    if late.time.size < 2:
-        return 0.0
-    if run.frequency is not None:
-        rate = run.frequency.value
-    else:
-        rate = spectral_peak(late.time, transverse(mean_position(late.nodes))[:, None])
-    return 1.0 / abs(rate) if rate else math.inf

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.sweep_points import FAILED, NOT_DONE
+from undula.studies.point import PIECE_SECONDS
 from undula.studies.study_store import Arrays, StudyStore
 
-#: Seconds that a piece should take: much longer than it is on its way.
-PIECE_SECONDS = 1.0
 #: Points of a piece as long as nobody knows how long they take.
 FIRST_POINTS = 2
 #: What the last points took, the median of so many, tells how long the next will take.
@@ -54,7 +53,7 @@ class SweepWork:
 
     def __init__(self, store: StudyStore, *, retry_failed: bool = False) -> None:
         self._store, self._study = store, store.study
-        self._whole_lines = store.study.policy == "neighbour"
+        self._whole_lines = store.study.whole_lines
         self._statuses = store.statuses()
         if retry_failed:
             store.forget(np.flatnonzero(self._statuses == FAILED).tolist())
@@ -85,7 +84,9 @@ class SweepWork:
         return self._again.popleft() if self._again else next(self._left, None)
 
     def take_back(self, piece: Piece, records: Sequence[Mapping[str, Any]]) -> None:
-        """Enter the records of a piece."""
+        """Enter the records of a piece; what it was too long for is handed out again, in halves."""
+        piece, rest = _cut(piece, len(records))
+        self._again.extend(part for part in _cut(rest, len(rest.numbers) // 2) if part.numbers)
         block = self._open[piece.block]
         first = self._store.blocks.numbers(piece.block).start
         self._store.put(block.arrays, [number - first for number in piece.numbers], records)
@@ -104,8 +105,7 @@ class SweepWork:
         """Take back a piece under which every worker died: one of its points may be to blame."""
         half = len(piece.numbers) // 2
         if half and not self._whole_lines:
-            parts = piece.numbers[:half], piece.numbers[half:]
-            self._again.extend(Piece(piece.block, part) for part in parts)
+            self._again.extend(_cut(piece, half))
         elif piece.deaths == 0:
             self._again.append(Piece(piece.block, piece.numbers, deaths=1))
         else:
@@ -159,4 +159,9 @@ class SweepWork:
         for start in range(inside.start, inside.stop, length):
             line = tuple(range(start, start + length))
             if any(self._statuses[number] == NOT_DONE for number in line):
-                yield line if self._study.settings["direction"] == "up" else line[::-1]
+                yield line[::-1] if self._study.settings.get("direction") == "down" else line
+
+
+def _cut(piece: Piece, count: int) -> tuple[Piece, Piece]:
+    """Return the first points of a piece, and the others."""
+    return Piece(piece.block, piece.numbers[:count]), Piece(piece.block, piece.numbers[count:])

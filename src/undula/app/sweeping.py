@@ -151,7 +151,7 @@ def _compile(study: Study) -> None:
 
 
 def _hand_out(work: SweepWork, study: Study, workers: Pool) -> None:
-    each = line if study.policy == "neighbour" else points
+    each = line if study.whole_lines else points
     while workers.has_room and (piece := work.take()) is not None:
         workers.give(piece, each, [study.job(number) for number in piece.numbers])
 

@@ -15,7 +15,7 @@ from undula.analysis.record import dataset_of
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending
 from undula.analysis.simulation import Simulation
-from undula.analysis.solved_points import solved_record
+from undula.analysis.solved_points import solved_line, solved_record
 from undula.analysis.sweep_points import DONE, FAILED
 from undula.arrays import Nodes, State
 from undula.errors import InputError
@@ -26,6 +26,8 @@ from undula.studies.spec import RunInput, parse_input
 from undula.studies.store import run_image
 from undula.studies.study_columns import LONGEST_TEXT
 
+#: Seconds that a piece of work should take: much longer than it is on its way.
+PIECE_SECONDS = 1.0
 #: The summary of a run holds these under the same names.
 _SAME = (
     *("verdict", "reason", "margin", "frequency", "frequency_error", "rotation_frequency"),
@@ -45,12 +47,26 @@ def software() -> str:
 
 
 def points(jobs: Sequence[Mapping[str, Any]]) -> tuple[str, list[dict[str, Any]]]:
-    """Return the version that is at work, and the record of each job; see `point`."""
-    return software(), [point(job) for job in jobs]
+    """Return the version that is at work, and the records of the first jobs; see `point`.
+
+    At least one is done, and others as long as `PIECE_SECONDS` are not over: of jobs of unknown
+    length, some far longer than the rest, nobody has to wait for all.
+    """
+    records, end = [], time.perf_counter() + PIECE_SECONDS
+    for job in jobs:
+        records.append(point(job))
+        if time.perf_counter() > end:
+            break
+    return software(), records
 
 
 def line(jobs: Sequence[Mapping[str, Any]]) -> tuple[str, list[dict[str, Any]]]:
-    """Do the same for jobs each of which begins with what the one before has come to."""
+    """Do the same for all jobs of a line: each run begins with what the one before has come to.
+
+    Solved states are those of branches that are followed once along the force.
+    """
+    if jobs[0]["label"] == "solved":
+        return software(), _solved_line(jobs)
     records: list[dict[str, Any]] = []
     nodes: Nodes | None = None
     for job in jobs:
@@ -98,15 +114,29 @@ def _solved(job: Mapping[str, Any]) -> dict[str, Any]:
     return {"status": DONE, **solved_record(build_model(parse_input(job["tables"])))}
 
 
+def _solved_line(jobs: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the records of jobs that differ in the force only."""
+    began = time.perf_counter()
+    try:
+        models = [build_model(parse_input(job["tables"])) for job in jobs]
+        found = solved_line(models[0], [model.load.force for model in models])
+        records = [{"status": DONE, **record} for record in found]
+    except Exception:
+        # What fails is to be known by its point.
+        return [point(job) for job in jobs]
+    seconds = (time.perf_counter() - began) / len(jobs)
+    return [{**record, "seconds": seconds} for record in records]
+
+
 def _run(job: Mapping[str, Any]) -> dict[str, Any]:
     wanted = parse_input(job["tables"])
     model = build_model(wanted)
     simulation = Simulation.begin(model, _start(job, wanted, model), build_schedule(wanted))
-    carry_on(simulation)
+    judged = carry_on(simulation)
     ending = {"ending": simulation.ending.value, "time": simulation.time}
     if simulation.ending is Ending.FAILED:
         return {"status": FAILED, "reason": simulation.cause, **ending}
-    run = Run.of(simulation)
+    run = judged or Run.of(simulation)
     last = {"nodes": run.motion.nodes[-1]} if "kick" in job else {}
     return {"status": DONE, **ending, **_figures(run), **_kept(job["keep"], run, wanted), **last}
 

@@ -15,6 +15,7 @@ from typing import Any, get_args
 
 import numpy as np
 
+from undula.analysis.parameters import FORCE
 from undula.errors import InputError
 from undula.studies.build import build_model, build_start
 from undula.studies.complaints import nearest
@@ -74,6 +75,15 @@ class Study:
     def keep(self) -> str:
         """What is kept of a run."""
         return str(self.settings.get("keep", "verdict"))
+
+    @property
+    def whole_lines(self) -> bool:
+        """Whether the points along the last axis are done together, in their order."""
+        last = self.axes[-1]
+        if self.label == "solved":
+            # The states along a branch are had by following it once.
+            return last.key == FORCE and min(last.values) >= 0.0
+        return self.policy == "neighbour"
 
     def place(self, number: int) -> tuple[int, ...]:
         """Return the indices of a point along the axes, and of its try."""
