@@ -1,10 +1,14 @@
 """Shares of starts that end in each verdict, against counts that are known."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
 
+import undula as un
 from refusal import complaint
+from small_studies import done, study_of
 from sweeps import coded, made_up
 from undula.analysis.basins import basins, wilson_interval
 from undula.views import basin_diagram
@@ -133,3 +137,37 @@ def test_a_sweep_without_answers_has_no_shares_to_draw() -> None:
 def _area(corners: np.ndarray) -> float:
     x, y = corners.T
     return 0.5 * abs(float(x @ np.roll(y, 1) - y @ np.roll(x, 1)))
+
+
+#: From next to straight to links that point backwards.
+OF_TWENTY = """
+[model]
+segments = 20
+[time]
+until = "settled"
+limit = 20.0
+[study]
+policy = "random"
+tries = 16
+amplitudes = [1e-3, 2.0]
+[[study.axes]]
+key = "load.force"
+values = [100, 177, 250]
+"""
+
+
+def test_where_starts_end_is_what_the_paper_says_except_where_two_states_are_stable(
+    tmp_path: Path,
+) -> None:
+    # Ling, Guo & Kanso (2018), section on the tip force: below the second transition every start
+    # out of a plane comes to spin, beyond it every start comes to flap.
+    found = basins(done(study_of(tmp_path, OF_TWENTY), tmp_path / "s.zarr"))["fraction"]
+    assert found.sel({"load.force": 100.0, "verdict": "spinning"}) == 1.0
+    assert found.sel({"load.force": 250.0, "verdict": "planar flapping"}) == 1.0
+    # Between the forces at which flapping is gained and spinning is lost it depends on the start.
+    model = un.Filament(20, un.TipLoad(177.0))
+    assert un.find_spinning(model).stable
+    assert un.find_flapping(model).stable
+    both = found.sel({"load.force": 177.0, "verdict": ["spinning", "planar flapping"]})
+    assert (both > 0.0).all()
+    assert both.sum() == 1.0

@@ -11,13 +11,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import undula.analysis.observables as observables
     import undula.views as views
+    from undula.analysis.basins import basins
     from undula.analysis.births import births
+    from undula.analysis.borders import solved_borders
+    from undula.analysis.disagreements import disagreements
     from undula.analysis.flapping import find_flapping
     from undula.analysis.integrate import integrate
     from undula.analysis.kinds import converged, follow, follow_from_onset
+    from undula.analysis.lyapunov import lyapunov
     from undula.analysis.modulated import find_modulated, follow_born
     from undula.analysis.record import dataset_of
     from undula.analysis.run import Run
+    from undula.analysis.solved_points import solved_line
     from undula.analysis.spinning import find_spinning
     from undula.analysis.stability import (
         critical_curve,
@@ -37,6 +42,7 @@ if TYPE_CHECKING:
     from undula.models.starts import from_state, helix, kicked, mode, planar, straight
     from undula.studies.steps_store import load_steps
     from undula.studies.store import load_result
+    from undula.studies.study_store import load_study
 
 _HOMES = {
     "BeadLoad": "undula.models.beads",
@@ -54,11 +60,13 @@ _HOMES = {
     "Spinning": "undula.analysis.states",
     "TableLoad": "undula.models.profiles",
     "TipLoad": "undula.models.loads",
+    "basins": "undula.analysis.basins",
     "births": "undula.analysis.births",
     "converged": "undula.analysis.kinds",
     "critical_curve": "undula.analysis.stability",
     "critical_force": "undula.analysis.stability",
     "dataset_of": "undula.analysis.record",
+    "disagreements": "undula.analysis.disagreements",
     "find_flapping": "undula.analysis.flapping",
     "find_modulated": "undula.analysis.modulated",
     "find_spinning": "undula.analysis.spinning",
@@ -72,8 +80,12 @@ _HOMES = {
     "kicked": "undula.models.starts",
     "load_result": "undula.studies.store",
     "load_steps": "undula.studies.steps_store",
+    "load_study": "undula.studies.study_store",
+    "lyapunov": "undula.analysis.lyapunov",
     "mode": "undula.models.starts",
     "planar": "undula.models.starts",
+    "solved_borders": "undula.analysis.borders",
+    "solved_line": "undula.analysis.solved_points",
     "spectrum": "undula.analysis.stability",
     "straight": "undula.models.starts",
     "threshold": "undula.analysis.thresholds",
@@ -98,11 +110,13 @@ __all__ = [
     "Spinning",
     "TableLoad",
     "TipLoad",
+    "basins",
     "births",
     "converged",
     "critical_curve",
     "critical_force",
     "dataset_of",
+    "disagreements",
     "find_flapping",
     "find_modulated",
     "find_spinning",
@@ -116,9 +130,13 @@ __all__ = [
     "kicked",
     "load_result",
     "load_steps",
+    "load_study",
+    "lyapunov",
     "mode",
     "observables",
     "planar",
+    "solved_borders",
+    "solved_line",
     "spectrum",
     "straight",
     "threshold",
