@@ -11,7 +11,7 @@ import numpy as np
 
 from undula.analysis.births import births
 from undula.analysis.branch_records import Bifurcation, Branch
-from undula.analysis.branches import Progress
+from undula.analysis.branches import Progress, unstable
 from undula.analysis.kinds import follow, follow_from_onset
 from undula.analysis.linear_results import Onset
 from undula.analysis.parameters import FORCE
@@ -21,6 +21,9 @@ from undula.models.model import Model
 
 # Branches are judged from a little above the onset on, where their amplitude is no longer small.
 _BEGINNING = 1.02
+# Where so many disturbances of a state grow, it is not followed on: it would have to lose all of
+# them again, and meets many more bifurcations, each located, before it does.
+_MOST_GROWING = 6
 
 
 @dataclass(frozen=True)
@@ -127,7 +130,9 @@ def moving_stretches(
     born = _born_downwards(model, kind, start)
     folds = [one for one in born.bifurcations if one.kind == "fold"] if born else []
     fold = min(folds, key=lambda one: one.value, default=None)
-    branch = follow(begun, FORCE, up_to, progress=progress) if up_to > start else None
+    branch = None
+    if up_to > start:
+        branch = follow(begun, FORCE, up_to, progress=progress, enough=_hopeless)
     changes = _changes(born) + _changes(branch)
     begins = fold.value if fold else onset
     known_to = start if branch is None else float(branch.values.max())
@@ -141,8 +146,18 @@ def moving_stretches(
         _told(fold),
         _first(changes, "gains"),
         _first(changes, "loses"),
-        None if complete else f"the branch was not followed beyond force {known_to:.6g}",
+        None if complete else _left(branch, known_to),
     )
+
+
+def _hopeless(bifurcation: Bifurcation[Any]) -> bool:
+    return bifurcation.unstable_after >= _MOST_GROWING
+
+
+def _left(branch: Branch[Any] | None, known_to: float) -> str:
+    growing = unstable(branch.states[-1]) if branch else 0
+    why = f", where {growing} disturbances grow" if growing >= _MOST_GROWING else ""
+    return f"the branch was not followed beyond force {known_to:.6g}{why}"
 
 
 def _born_downwards(model: Model, kind: str, end: float) -> Branch[Any] | None:
