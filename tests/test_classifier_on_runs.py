@@ -8,7 +8,7 @@ import pytest
 
 import undula as un
 from undula.analysis.lyapunov import lyapunov
-from undula.analysis.modulated_state import Modulated
+from undula.analysis.periodic_state import Periodic
 from undula.arrays import Array
 from undula.models.model import Model
 from undula.models.starts import leading_mode
@@ -158,8 +158,8 @@ def test_beyond_planar_flapping_a_run_ends_in_a_stable_motion_that_goes_round(
 ) -> None:
     run = beyond(force)
     assert run.verdict.name == "modulated spinning"
-    state = un.find_modulated(run.model, run)
-    assert isinstance(state, Modulated)
+    state = un.find_periodic(run.model, run)
+    assert isinstance(state, Periodic)
     assert state.exponents[0].real < 0.0
     seen = run.verdict.evidence
     repeats = round(seen["shape_period"] / state.duration)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from undula.analysis.integrate import integrate
     from undula.analysis.kinds import converged, follow, follow_from_onset
     from undula.analysis.lyapunov import lyapunov
-    from undula.analysis.modulated import find_modulated, follow_born
+    from undula.analysis.periodic_orbits import find_periodic, follow_born
     from undula.analysis.record import dataset_of
     from undula.analysis.run import Run
     from undula.analysis.solved_points import solved_line
@@ -68,10 +68,10 @@ _HOMES = {
     "dataset_of": "undula.analysis.record",
     "disagreements": "undula.analysis.disagreements",
     "find_flapping": "undula.analysis.flapping",
-    "find_modulated": "undula.analysis.modulated",
+    "find_periodic": "undula.analysis.periodic_orbits",
     "find_spinning": "undula.analysis.spinning",
     "follow": "undula.analysis.kinds",
-    "follow_born": "undula.analysis.modulated",
+    "follow_born": "undula.analysis.periodic_orbits",
     "follow_from_onset": "undula.analysis.kinds",
     "from_state": "undula.models.starts",
     "growth_curve": "undula.analysis.stability",
@@ -118,7 +118,7 @@ __all__ = [
     "dataset_of",
     "disagreements",
     "find_flapping",
-    "find_modulated",
+    "find_periodic",
     "find_spinning",
     "follow",
     "follow_born",

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from undula.analysis.branch_records import Branch
-from undula.analysis.modulated_state import Modulated
+from undula.analysis.periodic_state import Periodic
 from undula.analysis.states import Flapping, Spinning
 from undula.arrays import Array
 from undula.views import style
@@ -23,7 +23,7 @@ _COLOURS = (
     style.ENERGY_COLOUR,
     style.ACTIVE_COLOUR,
 )
-_NAMES = {Spinning: "spinning", Flapping: "planar flapping", Modulated: "modulated"}
+_NAMES = {Spinning: "spinning", Flapping: "planar flapping", Periodic: "modulated"}
 #: Line styles of stable and unstable parts.
 DASHES: Any = {True: "-", False: (0, (2.6, 1.6))}
 #: Width of both.

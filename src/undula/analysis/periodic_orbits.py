@@ -10,8 +10,8 @@ import numpy as np
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, UnresolvedError, follow_branch
 from undula.analysis.flapping import INTERVALS, METHOD, flapping_unknowns, in_space
-from undula.analysis.modulated_state import Modulated
 from undula.analysis.parameters import FORCE, changed, value_of
+from undula.analysis.periodic_state import Periodic
 from undula.analysis.run import Run
 from undula.analysis.spinning import require_space
 from undula.analysis.states import Flapping, NotFound
@@ -34,19 +34,19 @@ from undula.numerics.problem import DenseLinear
 from undula.numerics.shooting import Shooting, Shot
 
 
-def find_modulated(model: Model, guess: Run | Modulated) -> Modulated | NotFound:
+def find_periodic(model: Model, guess: Run | Periodic) -> Periodic | NotFound:
     """Solve for a motion that is periodic up to a turn about the axis.
 
     Parameters
     ----------
     model : Model
         In space.
-    guess : Run or Modulated
+    guess : Run or Periodic
         A run whose shape repeats itself, or the state of a similar model.
 
     Returns
     -------
-    Modulated or NotFound
+    Periodic or NotFound
 
     Raises
     ------
@@ -54,7 +54,7 @@ def find_modulated(model: Model, guess: Run | Modulated) -> Modulated | NotFound
         The model is confined to a plane.
     """
     require_space(model)
-    if isinstance(guess, Modulated):
+    if isinstance(guess, Periodic):
         nodes, duration, angle = guess.nodes[-1], guess.duration, guess.angle
     else:
         shape, turning = guess.shape_frequency, guess.rotation_frequency
@@ -75,16 +75,16 @@ def find_modulated(model: Model, guess: Run | Modulated) -> Modulated | NotFound
     return _judged(model, search.orbit)
 
 
-def modulated_family(state: Modulated, parameter: str, scale: float) -> Family[Modulated]:
+def periodic_family(state: Periodic, parameter: str, scale: float) -> Family[Periodic]:
     """Return the family of a motion that is periodic up to a turn, along a parameter."""
     shooting = _shooting(state.model, parameter)
-    start = shooting.shoot(modulated_unknowns(state), value_of(state.model, parameter))
+    start = shooting.shoot(periodic_unknowns(state), value_of(state.model, parameter))
     assert isinstance(start, Shot)  # the state was found so
     problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
     return _family(state.model, problem, parameter, scale)
 
 
-def modulated_unknowns(state: Modulated) -> Array:
+def periodic_unknowns(state: Periodic) -> Array:
     """Return the unknowns of a state in the equations of its family."""
     return np.concatenate([state.start, [state.duration, state.angle]])
 
@@ -95,7 +95,7 @@ def follow_born(
     *,
     parameter: str = FORCE,
     progress: Progress | None = None,
-) -> Branch[Modulated]:
+) -> Branch[Periodic]:
     """Follow the motion out of the plane that is born on a branch of planar flapping.
 
     Parameters
@@ -167,8 +167,8 @@ def _shooting(model: Model, parameter: str) -> Shooting:
     )
 
 
-def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -> Family[Modulated]:
-    def judge(problem: OrbitProblem, u: Array, p: float) -> Modulated:
+def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -> Family[Periodic]:
+    def judge(problem: OrbitProblem, u: Array, p: float) -> Periodic:
         orbit = orbit_at(problem, u, p)
         if orbit is None:
             raise UnresolvedError
@@ -177,10 +177,10 @@ def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -
     return Family(parameter, problem, judge, _named, scale)
 
 
-def _judged(model: Model, orbit: Orbit) -> Modulated:
+def _judged(model: Model, orbit: Orbit) -> Periodic:
     shot = orbit.shot
     judged = floquet_of(shot)
-    return Modulated(
+    return Periodic(
         model=model,
         duration=shot.duration,
         angle=shot.angle,
@@ -191,7 +191,7 @@ def _judged(model: Model, orbit: Orbit) -> Modulated:
     )
 
 
-def _named(state: Modulated, index: int) -> str:
+def _named(state: Periodic, index: int) -> str:
     swing = abs(state.exponents[index].imag) * state.duration
     if min(swing, abs(swing - np.pi)) > 1e-6:
         return "torus"

@@ -8,8 +8,8 @@ from undula.analysis.births import Birth, births
 from undula.analysis.branch_records import Bifurcation
 from undula.analysis.integrate import integrate
 from undula.analysis.kinds import follow_from_onset
-from undula.analysis.modulated import find_modulated, follow_born
-from undula.analysis.modulated_state import Modulated
+from undula.analysis.periodic_orbits import find_periodic, follow_born
+from undula.analysis.periodic_state import Periodic
 from undula.analysis.run import Run
 from undula.analysis.spinning import find_spinning
 from undula.analysis.states import Flapping, NotFound
@@ -39,8 +39,8 @@ def known(threshold: Threshold) -> Bifurcation[Flapping]:
 
 
 def test_a_run_whose_shape_repeats_itself_turned_is_solved_for(settled: Run) -> None:
-    state = find_modulated(STRONG, settled)
-    assert isinstance(state, Modulated)
+    state = find_periodic(STRONG, settled)
+    assert isinstance(state, Periodic)
     assert settled.shape_frequency is not None
     # The run's steps at the default tolerance leave some 1e-5 of the frequency.
     assert state.shape_frequency == pytest.approx(settled.shape_frequency.value, rel=1e-4)
@@ -53,8 +53,8 @@ def test_a_run_whose_shape_repeats_itself_turned_is_solved_for(settled: Run) -> 
 
 
 def test_the_state_comes_back_turned_by_its_angle(settled: Run) -> None:
-    state = find_modulated(STRONG, settled)
-    assert isinstance(state, Modulated)
+    state = find_periodic(STRONG, settled)
+    assert isinstance(state, Periodic)
     start = STRONG.rotate(STRONG.positions(state.unknowns[-1]), -state.angle)
     run = integrate(STRONG, start, until=state.duration, samples=2, rtol=1e-9)
     there = STRONG.from_nodes(run.motion.nodes[-1])
@@ -65,13 +65,13 @@ def test_the_state_comes_back_turned_by_its_angle(settled: Run) -> None:
 def test_a_run_whose_shape_does_not_change_gives_no_such_state() -> None:
     slow = Filament(12, TipLoad(60.0))
     run = integrate(slow, kicked(slow, 0.1), until="settled", limit=3.0)
-    found = find_modulated(slow, run)
+    found = find_periodic(slow, run)
     assert isinstance(found, NotFound)
     assert "does not repeat" in found.reason
 
 
 def test_a_confined_model_has_no_such_state(settled: Run) -> None:
-    assert "confined" in complaint(lambda: find_modulated(STRONG.with_(confined=True), settled))
+    assert "confined" in complaint(lambda: find_periodic(STRONG.with_(confined=True), settled))
 
 
 def test_what_flapping_gives_birth_to_ends_where_spinning_is_lost(gained: Threshold) -> None:

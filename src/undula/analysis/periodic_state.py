@@ -12,7 +12,7 @@ from undula.models.model import Model
 
 
 @dataclass(frozen=True)
-class Modulated:
+class Periodic:
     """A motion that repeats itself after a time, turned by an angle: x(t + T) = R(angle) x(t).
 
     Modulated spinning, precessing flapping and other toroidal motions are of this kind.
