@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 
 import undula as un
+from undula.analysis.integrate import carry_on
 from undula.analysis.lyapunov import lyapunov
 from undula.analysis.periodic_state import Periodic
+from undula.analysis.schedule import Schedule
+from undula.analysis.simulation import Simulation
 from undula.arrays import Array
 from undula.models.model import Model
 from undula.models.starts import leading_mode
@@ -202,3 +205,15 @@ def test_chains_of_three_to_five_links_windmill_at_large_forces(count: int, forc
     assert np.count_nonzero(np.diff(np.sign(upright))) > 20
     assert upright.min() < -0.9
     assert upright.max() > 0.9
+
+
+def test_a_run_that_has_settled_but_cannot_be_named_goes_on_until_it_can() -> None:
+    # Out of a plane it dies out so slowly that the motion repeats itself long before it is planar.
+    model = un.Filament(20, un.PowerLoad(193.2, exponent=10.0))
+    simulation = Simulation.begin(model, un.kicked(model, 0.3), Schedule("settled", limit=20.0))
+    assert carry_on(simulation).verdict.name == "planar flapping"
+    asked_for = simulation.shown_until
+    assert simulation.settled.shown_until < asked_for <= simulation.time
+    # What was asked for outlasts a stop.
+    resumed = Simulation.resume(model, simulation.schedule, simulation.checkpoint())
+    assert resumed.shown_until == asked_for

@@ -98,16 +98,25 @@ def carry_on(
 ) -> Run | None:
     """Advance a simulation to its end, or until Ctrl-C, or until the budget of seconds is spent.
 
-    A run to the settled state also ends when its motion is seen to be chaotic or quasi-periodic;
-    then it is returned, judged.
+    A run to the settled state also ends when its motion is seen to be chaotic or quasi-periodic. If
+    it has settled but cannot be named yet, it goes on for as long as that takes, up to its limit.
+
+    Returns
+    -------
+    Run or None
+        The run, if its end took judging it.
     """
     begun = time.monotonic()
     due = FIRST_ASKED
     while due <= simulation.watch.seen:
         due *= 2
     with interruptible() as interrupted:
-        while simulation.advance():
-            seconds = time.monotonic() - begun
+        while True:
+            goes_on, seconds = simulation.advance(), time.monotonic() - begun
+            if not goes_on:
+                judged = _settled(simulation)
+                if simulation.ending is not Ending.RUNNING:
+                    return judged
             if interrupted():
                 simulation.ending = Ending.INTERRUPTED
                 return None
@@ -121,7 +130,17 @@ def carry_on(
                 judged = _irregular(simulation)
                 if judged is not None:
                     return judged
-    return None
+
+
+def _settled(simulation: Simulation) -> Run | None:
+    """Return a run that has settled; have it go on if it takes more of it to name the motion."""
+    if simulation.ending is not Ending.SETTLED:
+        return None
+    run = Run.of(simulation)
+    if run.verdict.longer is not None and simulation.time < simulation.schedule.end:
+        simulation.shown_until = simulation.time + run.verdict.longer
+        simulation.ending = Ending.RUNNING
+    return run
 
 
 def _irregular(simulation: Simulation) -> Run | None:

@@ -47,6 +47,8 @@ class Simulation:
     rows : list of ndarray
         Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals
         of the turning rate, of the active power and of the dissipation.
+    shown_until : float
+        A motion that has settled is shown until then, or until it has been seen often enough [T].
     """
 
     model: Model
@@ -56,6 +58,7 @@ class Simulation:
     rows: list[Array] = field(default_factory=list)
     ending: Ending = Ending.RUNNING
     settled: Settled | None = None
+    shown_until: float = 0.0
     cause: str = ""
     marks: deque[Memory] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
 
@@ -145,7 +148,8 @@ class Simulation:
         found = self.watch.settled()
         if found is None or self.settled is None:
             self.settled = found  # a motion that leaves again had not settled
-        if self.settled is not None and self.time >= self.settled.shown_until:
+        shown = self.settled.shown_until if self.settled else math.inf
+        if self.time >= max(shown, self.shown_until):
             self.ending = Ending.SETTLED
             return False
         if self.sampled >= 2 * self.schedule.samples:
@@ -200,6 +204,7 @@ class Simulation:
     def checkpoint(self) -> dict[str, Array]:
         """Return all that `resume` needs, as arrays."""
         saved: dict[str, Any] = {"states": self.states, "interval": np.float64(self.interval)}
+        saved["shown_until"] = np.float64(self.shown_until)
         saved |= {f"watch_{name}": array for name, array in self.watch.to_arrays().items()}
         for prefix, memory in (("memory", self.memory), ("mark", self.marks[0])):
             for name, array in memory._asdict().items():
@@ -216,6 +221,7 @@ class Simulation:
         simulation = cls(
             model, schedule, memory, float(saved["interval"]), [np.array(saved["states"])]
         )
+        simulation.shown_until = float(saved["shown_until"])
         simulation.marks.appendleft(mark)
         watched = ("seen", "paces", "return_times", "return_nodes")
         simulation.watch.note_arrays({name: saved[f"watch_{name}"] for name in watched})
