@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from undula.analysis.observables import mean_position
+
 NAMES = (
     "straight",
     "spinning",
@@ -59,6 +61,8 @@ def made_up(axes: Axes, rule: Rule, tries: int = 1, *, shapes: bool = False) -> 
             (*dims, "shape", "node", "axis"),
             moved.reshape(*sizes, SHAPES, NODES, 3),
         )
+        path = np.stack([path_of(word) for word in verdict.ravel()])
+        variables["path"] = ((*dims, "instant", "axis"), path.reshape(*sizes, SHAPES, 3))
     return xr.Dataset(
         variables,
         coords={name: np.array(values) for name, values in axes.items()} | {"try": range(tries)},
@@ -85,3 +89,8 @@ def shape_of(verdict: str) -> np.ndarray:
     else:
         sides = np.cos(phase)[:, None] * radius, np.sin(phase)[:, None] * radius
     return np.stack([*sides, np.broadcast_to(height, sides[0].shape)], axis=-1)
+
+
+def path_of(verdict: str) -> np.ndarray:
+    """Return the mean position (SHAPES, 3) of these shapes."""
+    return mean_position(shape_of(verdict))

@@ -23,6 +23,7 @@ from small_studies import (
     work_off,
     written_in_order,
 )
+from undula.analysis.observables import mean_position
 from undula.analysis.schedule import Ending
 from undula.analysis.simulation import Simulation
 from undula.app.sweep_text import study_answer
@@ -88,6 +89,10 @@ def test_the_last_period_is_kept_where_it_is_asked_for(tmp_path: Path) -> None:
     stored = done(study_of(tmp_path, text), tmp_path / "s.zarr")
     assert stored["shapes"].dims[-3:] == ("shape", "node", "axis")
     assert stored["shapes"].shape == (2, 5, 1, 24, 5, 3)
+    # The mean position over several periods ends where that of the last shape is.
+    assert stored["path"].shape == (2, 5, 1, 360, 3)
+    last = mean_position(stored["shapes"].values[..., -1, :, :])
+    assert np.array_equal(stored["path"].values[..., -1, :], last)
     times = stored["shape_times"].values
     assert (np.diff(times, axis=-1) >= 0.0).all()
     tip = np.hypot(stored["shapes"].values[..., -1, 0], stored["shapes"].values[..., -1, 1])

@@ -1,4 +1,4 @@
-"""Shapes over the last period of a run, few enough to be kept of thousands of runs."""
+"""What the last periods of a run look like, little enough to be kept of thousands of runs."""
 
 import math
 
@@ -12,6 +12,8 @@ from undula.arrays import Array, Instants, Shapes
 
 #: Enough for a beat to be drawn as a fan of shapes.
 SHAPES = 24
+#: Enough for the path of the mean position over so many periods, of a torus one after the other.
+INSTANTS, PERIODS = 360, 12
 
 
 def last_period(run: Run) -> tuple[Instants, Shapes]:
@@ -29,12 +31,25 @@ def last_period(run: Run) -> tuple[Instants, Shapes]:
         Nodes [L]. Of a motion without a period they span that of the strongest line of its
         spectrum, of a straight one the whole late window.
     """
+    nearest = _samples(run, 1, SHAPES)
+    return run.window.time[nearest], run.window.nodes[nearest]
+
+
+def last_path(run: Run) -> Array:
+    """Return the mean position [L] over the last periods of a run, shape (INSTANTS, 3).
+
+    Where the run shows fewer than `PERIODS` of them, over those that it shows.
+    """
+    return mean_position(run.window.nodes[_samples(run, PERIODS, INSTANTS)])
+
+
+def _samples(run: Run, periods: int, count: int) -> Array:
+    """Return the indices (count,) of samples about evenly over the last periods of the window."""
     late = run.window
     length = float(late.time[-1] - late.time[0])
-    period = length if run.verdict.name == "straight" else min(length, _period(run, late))
-    wanted: Array = late.time[-1] - period * np.arange(SHAPES - 1, -1, -1) / SHAPES
-    nearest = np.rint(np.interp(wanted, late.time, np.arange(late.time.size))).astype(int)
-    return late.time[nearest], late.nodes[nearest]
+    period = length if run.verdict.name == "straight" else min(length, periods * _period(run, late))
+    wanted = late.time[-1] - period * np.arange(count - 1, -1, -1) / count
+    return np.asarray(np.rint(np.interp(wanted, late.time, np.arange(late.time.size))).astype(int))
 
 
 def _period(run: Run, late: Motion) -> float:

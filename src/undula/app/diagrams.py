@@ -26,7 +26,7 @@ from undula.views import basin_diagram, gallery, mean_paths, phase_diagram, phas
 #: What of a study can be drawn.
 VIEWS = ("diagram", "gallery", "paths", "basins")
 _PAGE = ".html"
-_SHAPES = ("shapes", "shape_times")
+_SHAPES = ("shapes", "shape_times", "path")
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from importlib.metadata import version
 from typing import Any
 
 from undula.analysis.integrate import carry_on
-from undula.analysis.last_period import last_period
+from undula.analysis.last_period import last_path, last_period
 from undula.analysis.record import dataset_of
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending
@@ -164,7 +164,7 @@ def _kept(keep: str, run: Run, wanted: RunInput) -> dict[str, Any]:
     """Return what is kept of a run besides its figures."""
     if keep == "period":
         times, shapes = last_period(run)
-        return {"shape_times": times, "shapes": shapes}
+        return {"shape_times": times, "shapes": shapes, "path": last_path(run)}
     if keep == "run":
         dataset = dataset_of(run, inputs=wanted.dump(), load=wanted.load_text)
         return {"image": run_image(dataset, run.checkpoint)}

@@ -88,13 +88,15 @@ SOLVED = (
     _number("flapping_frequency", "frequency of the flapping state", "frequency"),
 )
 #: Of a study that keeps the last period, with the dimensions that its variables have besides.
-SHAPES: Mapping[str, tuple[str, ...]] = {
+INNER: Mapping[str, tuple[str, ...]] = {
     "shape_times": ("shape",),
     "shapes": ("shape", "node", "axis"),
+    "path": ("instant", "axis"),
 }
 _OF_SHAPES = (
     _number("shape_times", "times of the shapes", "time"),
     _number("shapes", "nodes over the last period", "length"),
+    _number("path", "mean position over the last periods", "length"),
 )
 
 

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 import zarr
 
-from undula.analysis.last_period import SHAPES as SHAPE_COUNT
+from undula.analysis.last_period import INSTANTS, SHAPES
 from undula.analysis.sweep_points import TRY
 from undula.models.model import Model
 from undula.studies.blocks import chunk_shape
@@ -19,7 +19,7 @@ from undula.studies.build import build_model
 from undula.studies.point import software
 from undula.studies.spec import parse_input
 from undula.studies.study import Study
-from undula.studies.study_columns import SEED, SHAPES, STATUS, STATUS_WORDS, Column, columns_of
+from undula.studies.study_columns import INNER, SEED, STATUS, STATUS_WORDS, Column, columns_of
 
 #: What a store is, and the number of its format.
 FORMAT = "study 1"
@@ -80,15 +80,15 @@ def _coordinates(study: Study) -> dict[str, np.ndarray[Any, Any]]:
 
 def _add_variables(group: zarr.Group, study: Study, model: Model) -> None:
     dims = (*(axis.key for axis in study.axes), TRY)
-    lengths = {"shape": SHAPE_COUNT, "node": model.links + 1, "axis": 3}
+    lengths = {"shape": SHAPES, "instant": INSTANTS, "node": model.links + 1, "axis": 3}
     columns = columns_of(study.label, study.keep)
     largest = 8
     if study.keep == "period":
-        largest *= SHAPE_COUNT * lengths["node"] * lengths["axis"]
-    chunks = chunk_shape(study.shape, point_bytes=largest, whole_lines=study.policy == "neighbour")
+        largest *= SHAPES * lengths["node"] * lengths["axis"]
+    chunks = chunk_shape(study.shape, point_bytes=largest, whole_lines=study.whole_lines)
     units = {**model.units.names(), "rate": "1/T"}
     for column in columns:
-        further = SHAPES.get(column.name, ())
+        further = INNER.get(column.name, ())
         inner = tuple(lengths[name] for name in further)
         attributes = _told(column, units)
         _add(

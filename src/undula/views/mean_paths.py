@@ -14,7 +14,6 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.transforms import Affine2D
 
-from undula.analysis.observables import mean_position
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.views import style
@@ -31,7 +30,6 @@ from undula.views.phase_points import (
     diagram_axes,
     dots_of,
     heading,
-    kept_shapes,
     picked,
 )
 
@@ -50,13 +48,13 @@ _PALE, _DARK = 0.82, 0.05
 def mean_paths(
     store: xr.Dataset, borders: Sequence[Border] = (), *, title: str | None = None
 ) -> Figure:
-    """Draw the path of the mean position over a period, from above, at each of many points.
+    """Draw the path of the mean position over some periods, from above, at each of many points.
 
     Parameters
     ----------
     store : xarray.Dataset
-        A stored sweep that has kept shapes and varies two axes. Of many points some are drawn,
-        spread evenly; of several tries the first.
+        A stored sweep that has kept its last periods and varies two axes. Of many points some are
+        drawn, spread evenly; of several tries the first.
     borders : sequence of (str, ndarray, ndarray)
         As for `phase_diagram`.
     title : str, optional
@@ -70,7 +68,7 @@ def mean_paths(
     Raises
     ------
     InputError
-        The dataset is no stored sweep, does not vary two axes, or has kept no shapes.
+        The dataset is no stored sweep, does not vary two axes, or has kept nothing of its periods.
     """
     check_shapes(store)
     x, y = diagram_axes(store)
@@ -80,7 +78,7 @@ def mean_paths(
     paths = [(dot, _path(drawn, dot)) for dot in dots_of(drawn) if dot.verdict and dot.place == 0]
     known = [(dot, path) for dot, path in paths if path is not None]
     if not known:
-        raise InputError("no point of the store has kept shapes yet; let the sweep go on")
+        raise InputError("no point of the store has kept its path yet; let the sweep go on")
     with style.figure_style():
         figure = Figure(figsize=_SIZE)
         figure.text(0.022, 0.962, heading(store) if title is None else title, fontsize=11.5)
@@ -96,17 +94,10 @@ def mean_paths(
 
 
 def _path(store: xr.Dataset, dot: Dot) -> Array | None:
-    """Return the path (k + 1, 2) of the mean position, closed if the motion comes back."""
-    shapes = kept_shapes(store, dot.index)
-    if shapes is None:
-        return None
-    path = mean_position(shapes)[:, :2]
-    if len(path) < 3:
-        return path
-    # The samples of a period end one step before the first of the next.
-    step = float(np.linalg.norm(np.diff(path, axis=0), axis=1).max())
-    closed = float(np.linalg.norm(path[-1] - path[0])) <= 1.5 * step
-    return np.concatenate([path, path[:1]]) if closed else path
+    """Return the path (k, 2) of the mean position; None where it is not known yet."""
+    kept = store["path"].isel(dict(dot.index)).transpose("instant", "axis")
+    path = np.asarray(kept.values)[:, :2]
+    return path if np.isfinite(path).all() else None
 
 
 def _draw(axes: Axes, dot: Dot, path: Array, scale: float) -> None:

@@ -154,7 +154,7 @@ def picked(values: Any, count: int) -> list[float]:
 
 
 def check_shapes(store: xr.Dataset) -> None:
-    """Refuse a store without shapes.
+    """Refuse a store that has kept nothing of the last periods.
 
     Raises
     ------
