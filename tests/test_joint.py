@@ -4,7 +4,7 @@ from decimal import Decimal, localcontext
 
 import pytest
 
-from undula.models.joint import stiffening, stiffening_slope
+from undula.models.joint import stiffening, stiffening_curvature, stiffening_slope
 
 # Both sides of the switch at c = 0.94 between series and closed form, the folded end, and the far
 # side of aligned, c > 1, which iterates reach whose links are too long.
@@ -13,10 +13,11 @@ NEARLY_ALIGNED = [1.0 - 1e-6, 1.0 - 1e-12, 1.0 + 1e-12, 1.0 + 1e-6, 1.01, 1.05, 
 every_cosine = pytest.mark.parametrize("cosine", COSINES + NEARLY_ALIGNED)
 
 
-def exact(cosine: float) -> tuple[Decimal, Decimal]:
-    """Return g = psi / sin(psi) and dg/dc by halving the angle until its chord is the angle.
+def exact(cosine: float) -> tuple[Decimal, Decimal, Decimal]:
+    """Return g = psi / sin(psi) and its first two derivatives by c.
 
-    The chord of an angle is sqrt(2 (1 - cos)); beyond c = 1 angle and sine are both imaginary.
+    The angle is halved until its chord is the angle. The chord of an angle is sqrt(2 (1 - cos));
+    beyond c = 1 angle and sine are both imaginary.
     """
     with localcontext() as context:
         context.prec = 80
@@ -25,7 +26,8 @@ def exact(cosine: float) -> tuple[Decimal, Decimal]:
         for _ in range(halvings):
             half = ((1 + half) / 2).sqrt()
         g = (2 * (1 - half) / (1 - c * c)).sqrt() * 2**halvings
-        return g, (c * g - 1) / (1 - c * c)
+        slope = (c * g - 1) / (1 - c * c)
+        return g, slope, (g + 3 * c * slope) / (1 - c * c)
 
 
 @every_cosine
@@ -45,7 +47,19 @@ def test_its_slope_is_exact_to_round_off(cosine: float) -> None:
     )
 
 
+@every_cosine
+def test_its_curvature_is_exact_to_round_off(cosine: float) -> None:
+    # A difference of terms near 1 by 1 - c^2 > 0.1 once more: thirtyfold again. A folded joint and
+    # the far end of the series, at c = 1.1, as above.
+    tolerance = 1e-11 if cosine < -0.9 else 3e-12
+    assert stiffening_curvature(cosine) == pytest.approx(
+        float(exact(cosine)[2]), rel=tolerance, abs=0.0
+    )
+
+
 def test_aligned_links_have_the_stiffness_of_the_joint_itself() -> None:
     assert stiffening(1.0) == 1.0
     # psi / sin psi = 1 + psi^2 / 6 and c = 1 - psi^2 / 2 near 0; the third is rounded once.
     assert stiffening_slope(1.0) == pytest.approx(-1.0 / 3.0, rel=1e-15, abs=0.0)
+    # The next term of both: g = 1 + psi^2 / 6 + 7 psi^4 / 360.
+    assert stiffening_curvature(1.0) == pytest.approx(4.0 / 15.0, rel=1e-15, abs=0.0)

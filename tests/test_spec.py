@@ -26,6 +26,9 @@ DEFAULTS = {
         "drag_ratio": 2.0,
         "inextensibility": "exact",
         "confined": False,
+        "natural_curvature": [0.0, 0.0],
+        "bending_ratio": 1.0,
+        "twist": "rigid",
     },
     "load": {"profile": "tip", "force": 75.0},
     "start": {"shape": "kicked", "amplitude": 0.01, "seed": 1},
@@ -53,8 +56,14 @@ positive = st.floats(1e-6, 1e6)
 force = st.floats(0.0, 1e6) | st.integers(0, 10**6)
 amplitude = st.floats(1e-6, 0.5)
 angle = st.floats(-10.0, 10.0)
-models = optional(segments=st.integers(4, 500), drag_ratio=st.floats(1.0, 5.0)) | chosen(
-    "inextensibility", "weak", tensile_stiffness=positive, confined=st.booleans()
+curvature = st.lists(st.floats(-50.0, 50.0), min_size=2, max_size=2) | st.just(
+    {"s": [0.0, 0.3, 1.0], "k1": [1.0, 2.0, 0.0], "k2": [0.0, -1.0, 3.0]}
+)
+directors = {"natural_curvature": curvature, "bending_ratio": positive}
+models = (
+    optional(segments=st.integers(4, 500), drag_ratio=st.floats(1.0, 5.0), **directors)
+    | chosen("twist", "elastic", twist_stiffness=positive, **directors)
+    | chosen("inextensibility", "weak", tensile_stiffness=positive, confined=st.booleans())
 )
 loads = st.one_of(
     chosen("profile", "tip", force=force),

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from undula.models.chain import Chain
     from undula.models.filament import Filament
     from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+    from undula.models.natural_curvature import CurvatureTable
     from undula.models.profiles import ProfileLoad, TableLoad
     from undula.models.scales import Scales
     from undula.models.starts import from_state, helix, kicked, mode, planar, straight
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "BeadLoad": "undula.models.beads",
     "Chain": "undula.models.chain",
+    "CurvatureTable": "undula.models.natural_curvature",
     "Filament": "undula.models.filament",
     "Flapping": "undula.analysis.states",
     "InputError": "undula.errors",
@@ -97,6 +99,7 @@ _ROOMS = {"observables": "undula.analysis.observables", "views": "undula.views"}
 __all__ = [
     "BeadLoad",
     "Chain",
+    "CurvatureTable",
     "Filament",
     "Flapping",
     "InputError",

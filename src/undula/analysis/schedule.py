@@ -90,5 +90,5 @@ class Schedule:
             atol=self.atol,
             stale_after=STALE_AFTER,
             longest_step=LONGEST_STEP * self.limit if self.until == "settled" else math.inf,
-            frame=model.dimension == 3,
+            frame=model.dimension == 3 and model.axisymmetric,
         )

@@ -20,7 +20,7 @@ from undula.arrays import Array, Links
 from undula.errors import InputError, is_number
 from undula.models.linked_rod import LinkedRod
 from undula.models.loads import Load
-from undula.models.rod import FoldingPlanarRod, FoldingSpatialRod, Rod, WindingRod
+from undula.models.rod import FoldingPlanarRod, FoldingSpatialRod, PlainRod, Rod, WindingRod
 from undula.models.units import Units, chain_units
 
 MOST_LINKS = 1000
@@ -108,7 +108,7 @@ class Chain(LinkedRod):
         joint[0] = self.base_spring
         weight: Links = np.ones(self.links) * self.bead_drag
         head, foot = self.load.shares(self.links)
-        rod: type[Rod] = FoldingPlanarRod if self.confined else FoldingSpatialRod
+        rod: type[PlainRod] = FoldingPlanarRod if self.confined else FoldingSpatialRod
         if self.spring == "unwrapped":
             rod = WindingRod
         lag = 1.0 - 1.0 / self.drag_ratio

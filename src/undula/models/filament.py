@@ -1,18 +1,24 @@
 """The elastic filament: the linked rod with half-cell ends, second-order accurate in 1/segments."""
 
 import math
+import reprlib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
 
+from undula.arrays import Array, Links, State
 from undula.errors import InputError, is_number
+from undula.models.directors import directors_of
 from undula.models.linked_rod import LinkedRod
 from undula.models.loads import DensityLoad
+from undula.models.natural_curvature import NaturalCurvature, accepted, of_pieces
 from undula.models.rod import (
     ExtensiblePlanarRod,
     ExtensibleSpatialRod,
+    FramedRod,
+    PlainRod,
     PlanarRod,
     Rod,
     SpatialRod,
@@ -23,7 +29,7 @@ from undula.models.units import FILAMENT_UNITS, Units
 TENSILE_STIFFNESS = 4e4
 FEWEST_SEGMENTS = 4
 
-_RODS: dict[tuple[str, bool], type[Rod]] = {
+_RODS: dict[tuple[str, bool], type[PlainRod]] = {
     ("exact", False): SpatialRod,
     ("exact", True): PlanarRod,
     ("weak", False): ExtensibleSpatialRod,
@@ -49,6 +55,19 @@ class Filament(LinkedRod):
         EA L^2 / B of the weak form, positive; without meaning for the exact one.
     confined : bool
         Whether the filament is kept in the x-z plane.
+    natural_curvature : tuple of float, CurvatureTable or callable
+        Components k1, k2 of the curvature at rest [1/L] about the material directors d1 and d2,
+        which are e_x and e_y at the clamp: constant, a table, or a function from arc lengths (n,)
+        to (k1, k2), see `undula.models.natural_curvature`.
+    bending_ratio : float
+        Stiffness against bending about d2 over that about d1, which is B; positive.
+    twist : {"paper", "rigid", "elastic"}
+        What keeps a curved or anisotropic filament from twisting: nothing that it would feel, as
+        in the paper, whose equations drop the twist moment; a rigidity that bears whatever moment
+        it takes; or a stiffness. Without meaning for a straight isotropic filament, which does not
+        twist.
+    twist_stiffness : float
+        C/B of the elastic twist, positive; without meaning for the others.
 
     Raises
     ------
@@ -62,6 +81,10 @@ class Filament(LinkedRod):
     inextensibility: Literal["exact", "weak"] = "exact"
     tensile_stiffness: float = TENSILE_STIFFNESS
     confined: bool = False
+    natural_curvature: NaturalCurvature = (0.0, 0.0)
+    bending_ratio: float = 1.0
+    twist: Literal["paper", "rigid", "elastic"] = "rigid"
+    twist_stiffness: float = 1.0
 
     def __post_init__(self) -> None:
         """Refuse values that make no filament."""
@@ -93,6 +116,38 @@ class Filament(LinkedRod):
             raise InputError(
                 f"tensile_stiffness = {self.tensile_stiffness!r} has to be a positive finite number"
             )
+        self._check_directors()
+
+    def _check_directors(self) -> None:
+        object.__setattr__(self, "natural_curvature", accepted(self.natural_curvature))
+        for name in ("bending_ratio", "twist_stiffness"):
+            value = getattr(self, name)
+            if not (is_number(value) and value > 0.0):
+                raise InputError(f"{name} = {value!r} has to be a positive finite number")
+        if self.twist not in ("paper", "rigid", "elastic"):
+            raise InputError(f"twist = {self.twist!r} has to be 'paper', 'rigid' or 'elastic'")
+        if not self.framed:
+            return
+        what = "natural_curvature" if self.piece_curvature.any() else "bending_ratio"
+        for other, wanted in (("confined", False), ("inextensibility", "exact")):
+            if getattr(self, other) != wanted:
+                raise InputError(
+                    f"{what} = {reprlib.repr(getattr(self, what))} does not go with {other} ="
+                    f" {getattr(self, other)!r}; use {other} = {wanted!r}"
+                )
+
+    @cached_property
+    def piece_curvature(self) -> Array:
+        """Natural curvature (N + 1, 2) of the pieces that joints stand for, and of the rest [1/L].
+
+        Pieces end in the middles of links; the rest is the last half of the last one.
+        """
+        return of_pieces(self.natural_curvature, self.segments)
+
+    @property
+    def framed(self) -> bool:
+        """Whether its directors matter: it is naturally curved, or bends not alike about them."""
+        return self.bending_ratio != 1.0 or bool(self.piece_curvature.any())
 
     @cached_property
     def system(self) -> Rod:
@@ -102,8 +157,25 @@ class Filament(LinkedRod):
         joint[0], weight[-1] = 2.0 / h, 0.5 * h
         head, foot = self.load.shares(n)
         tensile = math.inf if self.inextensibility == "exact" else self.tensile_stiffness
-        rod = _RODS[self.inextensibility, self.confined]
-        return rod(joint, weight, head, foot, h, 1.0 - 1.0 / self.drag_ratio, tensile)
+        tables = (joint, weight, head, foot, h, 1.0 - 1.0 / self.drag_ratio, tensile)
+        if not self.framed:
+            return _RODS[self.inextensibility, self.confined](*tables)
+        natural, tip = self.piece_curvature[:-1] / joint[:, None], self._last_direction(head, foot)
+        compliance = 1.0 / self.twist_stiffness if self.twist == "elastic" else 0.0
+        transmitted = 0.0 if self.twist == "paper" else 1.0
+        return FramedRod(*tables, natural, self.bending_ratio, compliance, transmitted, tip)
+
+    def _last_direction(self, head: Links, foot: Links) -> Array:
+        """Return the tangent where the last link's load acts, (3,) on its directors and tangent.
+
+        Nothing bends the filament there, so that it is curved as it is by nature.
+        """
+        total = head[-1] + foot[-1]
+        beyond = np.clip(head[-1] / total, 0.0, 1.0) - 0.5 if total != 0.0 else 0.0
+        turn = beyond / self.segments * self.piece_curvature[-1]
+        angle = np.hypot(*turn)
+        aside = np.sinc(angle / np.pi) * turn
+        return np.array([aside[1], -aside[0], np.cos(angle)])
 
     @property
     def links(self) -> int:
@@ -117,8 +189,52 @@ class Filament(LinkedRod):
 
     @property
     def continuum(self) -> DensityLoad | None:
-        """The load of the inextensible filament that rigid links stand for; None for weak ones."""
-        return self.load if self.inextensibility == "exact" else None
+        """The load of the inextensible filament that rigid links stand for; None for weak ones.
+
+        None as well where the straight filament is no equilibrium or bends not alike.
+        """
+        return self.load if self.inextensibility == "exact" and not self.framed else None
+
+    def linearised(self) -> tuple[Array, Array]:
+        """Return stiffness and drag (N, N) of small displacements of the straight filament."""
+        if self.framed:
+            raise InputError(
+                "small motions about the straight state are those of a filament without natural"
+                " curvature that bends alike about both directors; use natural_curvature = (0, 0)"
+                " and bending_ratio = 1"
+            )
+        return super().linearised()
+
+    def reflect(self, x: State) -> State:
+        """Return the state reflected in the plane x = 0, unless natural curvature forbids it."""
+        if self.piece_curvature[:, 1].any():
+            raise InputError(
+                "a filament with natural curvature about its second director is no mirror image of"
+                " itself; give it curvature about the first one alone"
+            )
+        return super().reflect(x)
+
+    def directors(self, unknowns: Array) -> Array:
+        """Return the directors (d1, d2, t) of each link as rows, shape (..., N, 3, 3).
+
+        They are those of the lower half of a link that twists, right-handed, and orthonormal to
+        round-off; d1 is e_x at the clamp. `unknowns` (..., n) are the integrator's.
+        """
+        turns = np.zeros((*unknowns.shape[:-1], self.links))
+        if isinstance(self.system, FramedRod):
+            twist = self.system.compliance * self.system.link * self.twist_moments(unknowns)
+            turns[..., 1:] = np.cumsum(twist, axis=-1)[..., :-1]
+        return directors_of(self.nodes(self.positions(unknowns)), turns)
+
+    def twist_moments(self, unknowns: Array) -> Array:
+        """Return the twist moment in each link (..., N) [B/L] of the integrator's vectors (..., n).
+
+        The `paper` has them dropped from the forces; they are what it would take.
+        """
+        by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self._stride)
+        if isinstance(self.system, FramedRod):
+            return np.asarray(by_node[..., -1])
+        return np.zeros(by_node.shape[:-1])
 
     def with_links(self, links: int) -> Self | None:
         """Return the same filament made of another number of segments."""

@@ -15,7 +15,7 @@ from undula.compiled import kernel
 _SERIES_BELOW = 0.03
 #: psi / sin(psi) = sum of coefficient n times z^n.
 _SERIES = tuple(
-    math.prod([2.0 * k / (2.0 * k + 1.0) for k in range(1, n + 1)], start=1.0) for n in range(12)
+    math.prod([2.0 * k / (2.0 * k + 1.0) for k in range(1, n + 1)], start=1.0) for n in range(14)
 )
 #: Angle from pi within which the kink is rounded off [rad]: links that are 1e-7 too long, as those
 #: of a run may be, change sin(psi)^2 by less than a hundredth of what it is there.
@@ -25,6 +25,7 @@ _FOLDED_STIFFENING = (math.pi - FOLDED) / math.sin(FOLDED)
 _FOLDED_CHORD = 2.0 * (1.0 - _FOLDED_COSINE)
 _FOLDED_ENERGY = 0.5 * (math.pi - FOLDED) ** 2
 _SERIES_SLOPE = tuple((n + 1) * _SERIES[n + 1] for n in range(11))
+_SERIES_CURVATURE = tuple((n + 2) * (n + 1) * _SERIES[n + 2] for n in range(12))
 
 
 @kernel
@@ -53,6 +54,20 @@ def stiffening_slope(c: Any) -> Any:
     if c < _FOLDED_COSINE:
         return 0.0
     return (c * stiffening(c) - 1.0) / (1.0 - c * c)
+
+
+@kernel
+def stiffening_curvature(c: Any) -> Any:
+    """Return d^2g/dc^2 at c = cos(psi)."""
+    z = 0.5 * (1.0 - c)
+    if z < _SERIES_BELOW:
+        curvature = _SERIES_CURVATURE[11]
+        for n in range(10, -1, -1):
+            curvature = curvature * z + _SERIES_CURVATURE[n]
+        return 0.25 * curvature
+    if c < _FOLDED_COSINE:
+        return 0.0
+    return (stiffening(c) + 3.0 * c * stiffening_slope(c)) / (1.0 - c * c)
 
 
 @kernel

@@ -11,7 +11,7 @@ from undula.arrays import Array, Nodes, State
 from undula.errors import InputError
 from undula.models.loads import DensityLoad
 from undula.models.model import Energetics
-from undula.models.rod import PlanarRod, SpatialRod, WindingRod
+from undula.models.rod import FramedRod, PlanarRod, SpatialRod, WindingRod
 from undula.models.rod_flow import RodFlow
 from undula.models.rod_velocity import observe, rate_of_change
 from undula.numerics.banded import to_dense
@@ -45,6 +45,11 @@ class LinkedRod(ABC):
     def winds(self) -> bool:
         """Whether joints wind up beyond pi, instead of folding there."""
         return isinstance(self.system, WindingRod)
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether no direction across the axis is singled out: all motions can be turned."""
+        return not isinstance(self.system, FramedRod)
 
     @property
     def size(self) -> int:
@@ -235,15 +240,20 @@ class LinkedRod(ABC):
         """Return the state turned about the axis by an angle [rad]; a confined model refuses."""
         if self.dimension == 2:
             raise InputError("a confined model stays in its plane: it cannot be rotated")
+        if not self.axisymmetric:
+            raise InputError(
+                "a naturally curved or anisotropic filament is held by the clamp in one direction:"
+                " it cannot be rotated"
+            )
         turned = np.array(x, dtype=float).reshape(self.links, 3)
         cosine, sine = np.cos(angle), np.sin(angle)
         turned[:, :2] = turned[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
         return turned.ravel()
 
     def rotation_generator(self, x: State) -> State:
-        """Return the velocity of a unit rate of rotation about the axis; 0 if confined."""
+        """Return the velocity of a unit rate of rotation about the axis; 0 if it is no symmetry."""
         velocity = np.zeros((self.links, self.dimension))
-        if self.dimension == 3:
+        if self.dimension == 3 and self.axisymmetric:
             by_node = np.reshape(x, velocity.shape)
             velocity[:, 0], velocity[:, 1] = -by_node[:, 1], by_node[:, 0]
         return velocity.ravel()

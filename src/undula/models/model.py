@@ -41,6 +41,10 @@ class Model(Protocol):
         """Coordinates of a node in a state: 3, or 2 if confined to a plane."""
 
     @property
+    def axisymmetric(self) -> bool:
+        """Whether no direction across the axis is singled out: all motions can be turned."""
+
+    @property
     def load(self) -> Load:
         """The follower force."""
 
@@ -134,10 +138,10 @@ class Model(Protocol):
         """Return the state whose nodes these are."""
 
     def rotate(self, x: State, angle: float) -> State:
-        """Return the state turned about the axis; a confined model refuses."""
+        """Return the state turned about the axis; a model without that symmetry refuses."""
 
     def rotation_generator(self, x: State) -> State:
-        """Return the velocity of a unit rate of rotation about the axis; 0 if confined."""
+        """Return the velocity of a unit rate of rotation about the axis; 0 if it is no symmetry."""
 
     def reflect(self, x: State) -> State:
         """Return the state reflected in a plane through the axis (x to -x)."""

@@ -12,13 +12,14 @@ K_{j-1} g (1 - c_j) + K_j g (1 - c_{j+1}) turns the multiplier into the tension 
 it). In code node i and link i count from 0; `joint[i]` sits at the foot of link i.
 
 The vector y interleaves (x_i, T_i) node by node: 4 numbers in space, 3 in a plane. Links that wind
-have the angle psi at the foot of link i for a fourth (see `undula.models.winding`).
+have the angle psi at the foot of link i for a fourth (see `undula.models.winding`), and links with
+directors have eight (see `undula.models.framed`).
 Source: the discrete Kirchhoff rod of Ling, Guo & Kanso (2018), with half-cell ends; docs/theory.
 """
 
 from typing import ClassVar, NamedTuple
 
-from undula.arrays import Links
+from undula.arrays import Array, Links
 
 
 class Tables(NamedTuple):
@@ -102,6 +103,32 @@ class ExtensiblePlanarRod(Tables):
     half_bandwidth: ClassVar = 8
 
 
+class FramedTables(NamedTuple):
+    """The tables of a rod whose joints bend by a natural angle of their own, or not alike."""
+
+    joint: Links
+    weight: Links
+    head: Links
+    foot: Links
+    link: float
+    lag: float
+    tensile: float
+    natural: Array  # (N, 2) angle about each director by which a joint at rest is bent
+    ratio: float  # stiffness of joints about the second director over that about the first
+    compliance: float  # 1/C: twist per length and moment; 0 where links do not twist
+    transmitted: float  # 1 where joints pass the twist moment on, 0 where it is dropped
+    tip: Array  # (3,) components on a, b, t of the direction that opposes the last link's load
+
+
+class FramedRod(FramedTables):
+    """Rigid links in space, each with directors (see `undula.models.framed`)."""
+
+    dimension: ClassVar = 3
+    stride: ClassVar = 8
+    extensible: ClassVar = False
+    half_bandwidth: ClassVar = 18
+
+
 GENTLE_RODS = (SpatialRod, PlanarRod)
 RODS = (
     *GENTLE_RODS,
@@ -110,8 +137,11 @@ RODS = (
     ExtensibleSpatialRod,
     ExtensiblePlanarRod,
     WindingRod,
+    FramedRod,
 )
-Rod = (
+#: Rods whose joints have forces and energies of their own.
+OTHER_JOINTS = (WindingRod, FramedRod)
+PlainRod = (
     SpatialRod
     | PlanarRod
     | FoldingSpatialRod
@@ -120,3 +150,4 @@ Rod = (
     | ExtensiblePlanarRod
     | WindingRod
 )
+Rod = PlainRod | FramedRod

@@ -18,6 +18,7 @@ import numpy as np
 from undula.compiled import kernel
 from undula.models.joint import stiffening, stiffening_slope
 from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tangents_kernel
+from undula.numerics.system import derivative_half_bandwidth
 
 
 @cache
@@ -106,9 +107,9 @@ def link_blocks_kernel(rod: Any) -> Callable[..., Any]:
 
 @cache
 def derivative_kernel(rod: Any, link_blocks: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `derivative(system, y, w, c, turn, band)`, exact, half-bandwidth 3 m - 1."""
+    """Return `derivative(system, y, w, c, turn, band)`, exact."""
     d, m, extensible = rod.dimension, rod.stride, rod.extensible
-    half = 3 * m - 1
+    half = derivative_half_bandwidth(rod)
     tangents, cosine, drag_block = tangents_kernel(rod), cosine_kernel(d), drag_block_kernel(rod)
 
     @kernel

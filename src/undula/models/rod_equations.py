@@ -9,7 +9,7 @@ import numpy as np
 
 from undula.compiled import kernel
 from undula.models.joint import stiffening
-from undula.models.rod import RODS, WindingRod
+from undula.models.rod import OTHER_JOINTS, RODS, FramedRod
 from undula.numerics.system import (
     constraint_error,
     generator,
@@ -129,6 +129,38 @@ def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
     return mean_tangent
 
 
+@cache
+def rates_kernel(rod: Any) -> Any:
+    """Return `rates(system, y, v, out)` for loads along the links, see `undula.numerics.system`."""
+    d, m = rod.dimension, rod.stride
+    tangents, along = tangents_kernel(rod), along_kernel(rod)
+
+    @kernel
+    def rod_rates(system: Any, y: Any, v: Any, out: Any) -> None:
+        n = system.joint.shape[0]
+        t, length = np.empty((n, d)), np.empty(n)
+        tangents(system, y, t, length)
+        spin = inertia = power = dissipation = 0.0
+        for i in range(n):
+            k = m * i
+            if d == 3:
+                spin += y[k] * v[k + 1] - y[k + 1] * v[k]
+                inertia += y[k] * y[k] + y[k + 1] * y[k + 1]
+            lagging = system.lag * along(t, v, i)
+            for a in range(d):
+                direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
+                drag = system.weight[i] * (v[k + a] - lagging * direction)
+                dissipation += v[k + a] * drag
+                power -= system.head[i] * t[i, a] * v[k + a]
+                if i > 0:
+                    power -= system.foot[i] * t[i, a] * v[k - m + a]
+        out[0] = spin / inertia if inertia > 0.0 else 0.0
+        out[1] = power
+        out[2] = dissipation
+
+    return rod_rates
+
+
 def _register_forces(rod: Any) -> None:
     d, m, extensible = rod.dimension, rod.stride, rod.extensible
     tangents, moments, along = tangents_kernel(rod), moments_kernel(d), along_kernel(rod)
@@ -188,28 +220,8 @@ def _register_motion(rod: Any) -> None:
             for k in range(m * i + d, m * i + m):
                 out[k] = 0.0
 
-    @implements(rates, rod)
-    def rod_rates(system: Any, y: Any, v: Any, out: Any) -> None:
-        n = system.joint.shape[0]
-        t, length = np.empty((n, d)), np.empty(n)
-        tangents(system, y, t, length)
-        spin = inertia = power = dissipation = 0.0
-        for i in range(n):
-            k = m * i
-            if d == 3:
-                spin += y[k] * v[k + 1] - y[k + 1] * v[k]
-                inertia += y[k] * y[k] + y[k + 1] * y[k + 1]
-            lagging = system.lag * along(t, v, i)
-            for a in range(d):
-                direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
-                drag = system.weight[i] * (v[k + a] - lagging * direction)
-                dissipation += v[k + a] * drag
-                power -= system.head[i] * t[i, a] * v[k + a]
-                if i > 0:
-                    power -= system.foot[i] * t[i, a] * v[k - m + a]
-        out[0] = spin / inertia if inertia > 0.0 else 0.0
-        out[1] = power
-        out[2] = dissipation
+    if rod is not FramedRod:
+        implements(rates, rod)(rates_kernel(rod).py_func)
 
     @implements(size, rod)
     def rod_size(system: Any, vector: Any, mask: Any) -> Any:
@@ -222,7 +234,7 @@ def _register_motion(rod: Any) -> None:
                 total += change * change
         return math.sqrt(total * system.joint.shape[0])
 
-    if d == 3:
+    if d == 3 and rod is not FramedRod:
 
         @implements(generator, rod)
         def rod_generator(system: Any, y: Any, out: Any) -> None:
@@ -246,5 +258,5 @@ def _register_motion(rod: Any) -> None:
 
 for _rod in RODS:
     _register_motion(_rod)
-    if _rod is not WindingRod:
+    if _rod not in OTHER_JOINTS:
         _register_forces(_rod)

@@ -12,9 +12,10 @@ import numpy as np
 
 from undula.arrays import Array
 from undula.compiled import entry
-from undula.models.rod import Rod
+from undula.errors import InputError
+from undula.models.rod import FramedRod, Rod
 from undula.models.rod_matrix import exact_derivative
-from undula.numerics.system import generator, residual, weigh
+from undula.numerics.system import derivative_half_bandwidth, generator, residual, weigh
 
 
 @entry
@@ -39,7 +40,7 @@ class RodFlow:
     @property
     def half_bandwidth(self) -> int:
         """Half-bandwidth of the matrices."""
-        return 3 * self.stride - 1
+        return derivative_half_bandwidth(type(self.system))
 
     @property
     def stride(self) -> int:
@@ -75,10 +76,20 @@ class RodFlow:
         return out, dragged
 
     def mirrored(self, y: Array) -> Array:
-        """Return vectors (..., n) with x reflected, and with it the sense of angles that wind."""
+        """Return vectors (..., n) with x reflected, and with it the sense of angles that wind.
+
+        A first director that stands on the mirror at the clamp becomes the opposite of its image.
+        """
         signs = np.ones(self.stride)
         signs[0] = -1.0
         signs[self.system.dimension + 1 :] = -1.0
+        if isinstance(self.system, FramedRod):
+            if self.system.natural[:, 1].any() or self.system.tip[0] != 0.0:
+                raise InputError(
+                    "a rod that is curved about its second director is no mirror image of itself;"
+                    " give it natural curvature about the first one alone"
+                )
+            signs[self.system.dimension + 1] = 1.0
         return np.asarray(y * np.tile(signs, self.system.joint.size))
 
     def displacements(self, y: Array) -> Array:

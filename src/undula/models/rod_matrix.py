@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from undula.compiled import entry
+from undula.models.framed_derivative import framed_derivative
 from undula.models.joint import stiffening
-from undula.models.rod import GENTLE_RODS, RODS, WindingRod
+from undula.models.rod import GENTLE_RODS, RODS, FramedRod, WindingRod
 from undula.models.rod_derivative import derivative_kernel, drag_block_kernel, link_blocks_kernel
 from undula.models.rod_equations import cosine_kernel, tangents_kernel
 from undula.models.winding_derivative import winding_derivative
@@ -80,12 +81,9 @@ def _register_gentle(rod: Any) -> None:
                     band[m * i + d, half + a - d - m] = -t[i, a] / h
 
 
+_OTHERS: dict[Any, Any] = {WindingRod: winding_derivative, FramedRod: framed_derivative}
 for _rod in RODS:
-    _derivative: Any = (
-        winding_derivative
-        if _rod is WindingRod
-        else derivative_kernel(_rod, link_blocks_kernel(_rod))
-    )
+    _derivative: Any = _OTHERS.get(_rod) or derivative_kernel(_rod, link_blocks_kernel(_rod))
     implements(derivative, _rod)(_derivative.py_func)
     if _rod in GENTLE_RODS:
         _register_gentle(_rod)
@@ -95,5 +93,5 @@ for _rod in RODS:
 
 @entry
 def exact_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
-    """Write the exact derivative of the residual to band (n, 6 m - 1), see `matrix`."""
+    """Write the exact derivative of the residual to band (n, 2 b + 1), see `matrix`."""
     derivative(system, y, w, c, turn, band)

@@ -13,8 +13,10 @@ import numpy as np
 
 from undula.compiled import entry, kernel
 from undula.models.joint import joint_energy, stiffening
-from undula.models.rod import RODS, WindingRod
+from undula.models.rod import OTHER_JOINTS, RODS, FramedRod, WindingRod
 from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tangents_kernel
+from undula.models.tridiagonal import solve_tridiagonal
+from undula.models.twist import find_frames, framed_energy
 from undula.models.winding import follow_angles, winding_energy
 from undula.numerics.system import generic, implements, rates, residual
 
@@ -33,19 +35,6 @@ def find_velocity(system: Any, y: Any, v: Any) -> Any:
 def elastic_energy(system: Any, y: Any) -> Any:
     """Return the energies of bending and of stretching at y (n,)."""
     return 0.0, 0.0
-
-
-@kernel
-def solve_tridiagonal(lower: Any, diagonal: Any, upper: Any, x: Any) -> None:
-    """Overwrite the right-hand side x by the solution; the matrix is overwritten too."""
-    n = x.shape[0]
-    for i in range(1, n):
-        factor = lower[i] / diagonal[i - 1]
-        diagonal[i] -= factor * upper[i - 1]
-        x[i] -= factor * x[i - 1]
-    x[n - 1] /= diagonal[n - 1]
-    for i in range(n - 2, -1, -1):
-        x[i] = (x[i] - upper[i] * x[i + 1]) / diagonal[i]
 
 
 def _register(rod: Any) -> None:
@@ -120,10 +109,17 @@ def _register(rod: Any) -> None:
         follow_angles(system, y)
         rigid_multipliers(system, y)
 
+    @kernel
+    def framed_multipliers(system: Any, y: Any) -> None:
+        find_frames(system, y)
+        rigid_multipliers(system, y)
+
     rod_velocity_compiled = kernel(rod_velocity)
     compiled = extensible_multipliers if extensible else rigid_multipliers
     if rod is WindingRod:
         compiled = winding_multipliers
+    if rod is FramedRod:
+        compiled = framed_multipliers
 
     @implements(find_multipliers, rod)
     def rod_multipliers(system: Any, y: Any) -> None:
@@ -154,9 +150,10 @@ def _register_energy(rod: Any) -> None:
 
 for _rod in RODS:
     _register(_rod)
-    if _rod is not WindingRod:
+    if _rod not in OTHER_JOINTS:
         _register_energy(_rod)
 implements(elastic_energy, WindingRod)(winding_energy.py_func)
+implements(elastic_energy, FramedRod)(framed_energy.py_func)
 
 
 @entry

@@ -66,6 +66,10 @@ def build_model(wanted: ModelInput) -> Model:
         inextensibility=table.inextensibility,
         tensile_stiffness=table.tensile_stiffness,
         confined=table.confined,
+        natural_curvature=table.natural_curvature,
+        bending_ratio=table.bending_ratio,
+        twist=table.twist,
+        twist_stiffness=table.twist_stiffness,
     )
 
 

@@ -6,10 +6,13 @@ Numbers are dimensionless: lengths in L, forces in B/L^2 for a filament and in K
 from collections.abc import Collection, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, PlainSerializer, model_validator
+from pydantic import BeforeValidator, Field, InstanceOf, PlainSerializer, model_validator
 
 from undula.errors import InputError
 from undula.models.chain import MOST_LINKS
+from undula.models.filament import Filament
+from undula.models.loads import TipLoad
+from undula.models.natural_curvature import CurvatureTable
 from undula.models.profiles import TableLoad
 from undula.studies.strict_table import OnlyWith, Table, conflict
 
@@ -24,6 +27,39 @@ BeadNumbers = Annotated[
     tuple[Annotated[int, Field(ge=1)], ...],
     Field(strict=False, min_length=1),
     PlainSerializer(list),
+]
+
+
+def _curvature(given: Any) -> Any:
+    """Return the lists of a natural curvature as a table, anything else as it is."""
+    if isinstance(given, list) and len(given) != 2:
+        raise conflict(
+            f"model.natural_curvature = {given} is no pair; give two numbers, [k1, k2], or a table"
+            " of the lists s, k1, k2"
+        )
+    if not isinstance(given, Mapping):
+        return given
+    if given.keys() != {"s", "k1", "k2"}:
+        raise conflict(
+            f"model.natural_curvature has the keys {', '.join(map(str, given))}; give the lists s,"
+            " k1, k2, or two numbers"
+        )
+    try:
+        return CurvatureTable(**given)
+    except InputError as error:
+        # The table names its values as the keys are named.
+        told = str(error).removeprefix("CurvatureTable: ")
+        raise conflict(f"model.natural_curvature.{told}") from None
+
+
+def _as_lists(table: CurvatureTable) -> dict[str, list[float]]:
+    return {name: list(getattr(table, name)) for name in ("s", "k1", "k2")}
+
+
+CurvaturePair = Annotated[tuple[float, float], Field(strict=False), PlainSerializer(list)]
+GivenCurvature = Annotated[
+    CurvaturePair | Annotated[InstanceOf[CurvatureTable], PlainSerializer(_as_lists)],
+    BeforeValidator(_curvature),
 ]
 
 
@@ -52,6 +88,16 @@ class ModelTable(Table):
         Drag of every bead of a chain, or a list with that of each one from the base on, in zeta.
     confined
         Whether the motion is kept in one plane.
+    natural_curvature
+        Curvature at rest about the two directors of a filament in 1/L: a pair, or the points of a
+        table; not with `confined` or weak inextensibility, nor are ratios of stiffness but 1.
+    bending_ratio
+        Stiffness of a filament against bending about its second director over that about the
+        first, above 0.
+    twist
+        What keeps a filament from twisting: ``"paper"``, ``"rigid"`` or ``"elastic"``.
+    twist_stiffness
+        C/B, above 0; read only for elastic twist.
     spring
         What the energy of a chain's joint takes for its angle: ``"angle"``, from 0 to pi, or
         ``"unwrapped"``, followed beyond pi, for a confined chain.
@@ -72,6 +118,14 @@ class ModelTable(Table):
         default=1.0, description="a number above 0, or a list with one for each bead"
     )
     confined: bool = Field(default=False, description="true or false")
+    natural_curvature: GivenCurvature = Field(
+        default=(0.0, 0.0), description="a list of two numbers, or a table of the lists s, k1, k2"
+    )
+    bending_ratio: float = Field(default=1.0, gt=0.0, description="a number above 0")
+    twist: Literal["paper", "rigid", "elastic"] = Field(
+        default="rigid", description="'paper', 'rigid' or 'elastic'"
+    )
+    twist_stiffness: float = Field(default=1.0, gt=0.0, description="a number above 0")
     spring: Literal["angle", "unwrapped"] = Field(
         default="angle", description="'angle' or 'unwrapped'"
     )
@@ -81,6 +135,10 @@ class ModelTable(Table):
         "links": OnlyWith("kind", ("chain",)),
         "inextensibility": OnlyWith("kind", ("filament",)),
         "tensile_stiffness": OnlyWith("inextensibility", ("weak",)),
+        "natural_curvature": OnlyWith("kind", ("filament",)),
+        "bending_ratio": OnlyWith("kind", ("filament",)),
+        "twist": OnlyWith("kind", ("filament",)),
+        "twist_stiffness": OnlyWith("twist", ("elastic",)),
         "base_spring": OnlyWith("kind", ("chain",)),
         "bead_drag": OnlyWith("kind", ("chain",)),
         "spring": OnlyWith("kind", ("chain",)),
@@ -100,6 +158,24 @@ class ModelTable(Table):
                 "model.spring = 'unwrapped' has no meaning in space, where no angle exceeds pi; use"
                 " model.confined = true or model.spring = 'angle'"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _directors_have_room(self) -> Self:
+        if self.kind != "filament":
+            return self
+        try:
+            Filament(
+                segments=self.segments,
+                load=TipLoad(0.0),
+                inextensibility=self.inextensibility,
+                confined=self.confined,
+                natural_curvature=self.natural_curvature,
+                bending_ratio=self.bending_ratio,
+            )
+        except InputError as error:
+            # The filament names its values as the keys are named.
+            raise conflict(f"model.{error}") from None
         return self
 
     @model_validator(mode="after")
