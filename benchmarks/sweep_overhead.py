@@ -89,7 +89,7 @@ def swept(study: Study, path: Path) -> Watched:
         began: tuple[float, float, int] | None = None
         while work.left:
             while workers.has_room and (piece := work.take()) is not None:
-                workers.give(piece, points, [study.job(number) for number in piece.numbers])
+                workers.give(piece, points, study.dump(), piece.numbers)
             for piece, outcome in workers.come_back(0.2):
                 work.take_back(piece, outcome[1])
             work.save(SAVE_EVERY)

@@ -45,7 +45,7 @@ def work_off(work: SweepWork, study: Study, most: int | None = None) -> list[Pie
     each = line if study.whole_lines else points
     pieces: list[Piece] = []
     while (most is None or len(pieces) < most) and (piece := work.take()) is not None:
-        work.take_back(piece, each([study.job(number) for number in piece.numbers])[1])
+        work.take_back(piece, each(study.dump(), piece.numbers)[1])
         pieces.append(piece)
     work.save()
     return pieces

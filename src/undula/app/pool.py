@@ -4,7 +4,7 @@ import logging
 import queue
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -32,13 +32,12 @@ DEATHS = 10
 #: Dask has its workers give back memory as soon as they can, and arrays of a megabyte then cost
 #: more to allocate than to fill: judging a run takes three times as long (docs/notes/sweeps.md).
 MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_TRIM_THRESHOLD_": 2**29}
+#: Pieces that the scheduler remembers when they are done: it would keep a hundred.
+REMEMBERED = 4
 #: Times that workers of our own are started if one dies meanwhile.
 STARTS = 5
 #: Seconds to wait for a scheduler to answer.
 PATIENCE = 20.0
-
-#: What is sent to a worker.
-Work = Callable[[Sequence[Mapping[str, Any]]], Any]
 
 
 class LostError(Exception):
@@ -73,9 +72,9 @@ class Pool:
         # Pieces are ready for workers that are still to come.
         return len(self._pieces) < AHEAD * max(1, self._threads)
 
-    def give(self, piece: Any, work: Work, jobs: Sequence[Mapping[str, Any]]) -> None:
-        """Send a piece away."""
-        future = self._client.submit(work, jobs, pure=False)
+    def give(self, piece: Any, work: Callable[..., Any], *what: Any) -> None:
+        """Send a piece away: what the work on it is to be called with, in plain types."""
+        future = self._client.submit(work, *what, pure=False)
         self._pieces[future] = piece
         future.add_done_callback(self._finished.put)
 
@@ -160,9 +159,10 @@ def _client(workers: int | None, scheduler: str | None) -> Iterator[Client]:
         with client:
             yield client
         return
-    settings = {"distributed.scheduler.allowed-failures": DEATHS} | {
-        f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in MEMORY.items()
-    }
+    settings = {
+        "distributed.scheduler.allowed-failures": DEATHS,
+        "distributed.diagnostics.computations.max-history": REMEMBERED,
+    } | {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in MEMORY.items()}
     with (
         dask.config.set(settings),
         _cluster(workers or CPU_COUNT) as cluster,

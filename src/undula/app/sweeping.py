@@ -153,7 +153,7 @@ def _compile(study: Study) -> None:
 def _hand_out(work: SweepWork, study: Study, workers: Pool) -> None:
     each = line if study.whole_lines else points
     while workers.has_room and (piece := work.take()) is not None:
-        workers.give(piece, each, [study.job(number) for number in piece.numbers])
+        workers.give(piece, each, study.dump(), piece.numbers)
 
 
 def _take_back(work: SweepWork, workers: Pool) -> None:

@@ -24,6 +24,7 @@ from undula.models.starts import from_state, turned
 from undula.studies.build import build_model, build_schedule, build_start
 from undula.studies.spec import RunInput, parse_input
 from undula.studies.store import run_image
+from undula.studies.study import of_dump
 from undula.studies.study_columns import LONGEST_TEXT
 
 #: Seconds that a piece of work should take: much longer than it is on its way.
@@ -46,25 +47,27 @@ def software() -> str:
     return version("undula")
 
 
-def points(jobs: Sequence[Mapping[str, Any]]) -> tuple[str, list[dict[str, Any]]]:
-    """Return the version that is at work, and the records of the first jobs; see `point`.
+def points(study: Mapping[str, Any], numbers: Sequence[int]) -> tuple[str, list[dict[str, Any]]]:
+    """Return the version that is at work, and the records of the first of some points of a study.
 
-    At least one is done, and others as long as `PIECE_SECONDS` are not over: of jobs of unknown
-    length, some far longer than the rest, nobody has to wait for all.
+    The study is one that `Study.dump` gave. At least one point is done, and others as long as
+    `PIECE_SECONDS` are not over: of points of unknown length, some far longer than the rest, nobody
+    has to wait for all.
     """
     records, end = [], time.perf_counter() + PIECE_SECONDS
-    for job in jobs:
-        records.append(point(job))
+    for number in numbers:
+        records.append(point(of_dump(study).job(number)))
         if time.perf_counter() > end:
             break
     return software(), records
 
 
-def line(jobs: Sequence[Mapping[str, Any]]) -> tuple[str, list[dict[str, Any]]]:
-    """Do the same for all jobs of a line: each run begins with what the one before has come to.
+def line(study: Mapping[str, Any], numbers: Sequence[int]) -> tuple[str, list[dict[str, Any]]]:
+    """Do the same for all points of a line: each run begins with what the one before has come to.
 
     Solved states are those of branches that are followed once along the force.
     """
+    jobs = [of_dump(study).job(number) for number in numbers]
     if jobs[0]["label"] == "solved":
         return software(), _solved_line(jobs)
     records: list[dict[str, Any]] = []
