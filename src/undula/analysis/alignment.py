@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,3 +52,22 @@ def aligned_distance(shape_a: Array, shape_b: Array) -> Alignment:
     upright = (shape_a[..., 2] - shape_b[..., 2]) ** 2
     square = np.sum(weights * (sideways + upright), axis=-1)
     return Alignment(distance=np.asarray(np.sqrt(square)), angle=np.asarray(angle))
+
+
+def fixed_distance(shape_a: Array, shape_b: Array) -> Alignment:
+    """Distance between two shapes as they are, for bodies that no turn takes to themselves.
+
+    Parameters and what is returned are those of `aligned_distance`; the angle is 0.
+    """
+    weights = arc_weights(shape_a.shape[-2])
+    square = np.sum(weights * np.sum((shape_a - shape_b) ** 2, axis=-1), axis=-1)
+    return Alignment(distance=np.asarray(np.sqrt(square)), angle=np.zeros(square.shape))
+
+
+#: How two shapes are compared.
+Compare = Callable[[Array, Array], Alignment]
+
+
+def comparison(*, axisymmetric: bool) -> Compare:
+    """Return how shapes of a body are compared: up to turns if these take its motions to others."""
+    return aligned_distance if axisymmetric else fixed_distance

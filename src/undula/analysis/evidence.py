@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from undula.analysis.alignment import aligned_distance
+from undula.analysis.alignment import Compare, aligned_distance
 from undula.analysis.decay import LinearMotion, linear_motion
 from undula.analysis.frequency import Frequency, whole_motion_frequency
 from undula.analysis.observables import displacement, envelope, mean_position, transverse
@@ -18,6 +18,9 @@ from undula.arrays import Instants, Shapes
 
 # Below this RMS displacement [L] the motion is linear to about its square, one per cent.
 LINEAR = 0.1
+# Largest change of shape of a steady motion, relative: far above integration errors, far below any
+# modulation that would deserve another name.
+STEADY_SHAPE = 5e-3
 # Growth by less than this factor over the window is not told from a slow change of amplitude.
 GROWTH_FACTOR = 1.2
 # The halves differ by more than this share of the change of shape when it drifts (about twice it
@@ -77,6 +80,11 @@ class Evidence:
     growth: LinearMotion | None
 
     @property
+    def steady(self) -> bool:
+        """Whether the shape does not change."""
+        return self.shape_change <= STEADY_SHAPE
+
+    @property
     def transient(self) -> bool:
         """Whether the change of shape is a drift, not a swing, and so may end by itself."""
         return self.drift > TRANSIENT * self.shape_change
@@ -90,7 +98,11 @@ class Evidence:
 
 
 def measure(
-    time: Instants, nodes: Shapes, bending_energy: Instants, rotation_angle: Instants
+    time: Instants,
+    nodes: Shapes,
+    bending_energy: Instants,
+    rotation_angle: Instants,
+    compare: Compare = aligned_distance,
 ) -> Evidence:
     """Measure a window of a run in which the filament is not straight throughout.
 
@@ -104,6 +116,8 @@ def measure(
         Energy [B/L], shape ``(m,)``.
     rotation_angle
         Integral of the rate of turning about z [rad], shape ``(m,)``.
+    compare
+        How shapes are compared.
 
     Returns
     -------
@@ -119,8 +133,8 @@ def measure(
         samples=float(len(time)),
         displacement=size,
         turns=float(rotation_angle[-1] - rotation_angle[0]) / (2.0 * np.pi),
-        shape_change=float(np.max(aligned_distance(nodes, middle).distance)) / size,
-        shape_drift=float(aligned_distance(nodes[0], nodes[-1]).distance) / size,
+        shape_change=float(np.max(compare(nodes, middle).distance)) / size,
+        shape_drift=float(compare(nodes[0], nodes[-1]).distance) / size,
         energy_swing=(energy.max - energy.min) / energy.mean if energy.mean > 0.0 else 0.0,
         planarity=planarity(nodes),
         drift=drift(nodes, bending_energy),

@@ -88,7 +88,7 @@ def judge(
     since = settled.since if settled else None
     straight = None if close is None else straight_verdict(whole.time, whole.nodes)
     motion = whole if close is None or straight is not None else close
-    judged = Judged(straight or _verdict(motion, since), motion)
+    judged = Judged(straight or _verdict(model, motion, since), motion)
     asked = exponents is Exponents.ALWAYS
     if not asked and (judged.verdict.late is None or exponents is Exponents.NEVER):
         return judged
@@ -98,13 +98,14 @@ def judge(
         return Judged(judged.verdict, motion, without=str(error))
 
 
-def _verdict(motion: Motion, since: float | None) -> Verdict:
+def _verdict(model: Model, motion: Motion, since: float | None) -> Verdict:
     return first_verdict(
         motion.time,
         motion.nodes,
         motion.energetics.bending_energy,
         motion.rotation_angle,
         settled_from=since,
+        axisymmetric=model.axisymmetric,
     )
 
 

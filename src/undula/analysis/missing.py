@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from undula.analysis.evidence import Evidence
-from undula.analysis.naming import MANY_MAXIMA, PLANAR_TOLERANCE, Late, steady
+from undula.analysis.late import MANY_MAXIMA, PLANAR_TOLERANCE, Late
 from undula.analysis.returns import RECURRENT
 from undula.analysis.straightening import DECAY_FACTOR, LATE_FACTOR, Straightening
 from undula.analysis.window import FALLBACK_SHARE, STATIONARY
@@ -32,7 +32,7 @@ def missing(late: Late, fall: Straightening) -> tuple[str, float | None]:
         How much longer to run, roughly [T]; None if that does not help.
     """
     seen, span = late.seen, float(late.time[-1] - late.time[0])
-    if steady(seen):
+    if seen.steady:
         turned = f"bent and steady, but seen to turn by only {abs(seen.turns):.2g} of a turn"
         return f"{turned}: if it is not at rest, run longer", span
     if fall.falling and fall.motion is not None:

@@ -16,26 +16,17 @@ sense of rotation (`undula.analysis.turning`): above one half it is the former.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-
 import numpy as np
 
-from undula.analysis.evidence import GROWTH_FACTOR, Evidence
-from undula.analysis.planes import planarity
-from undula.analysis.returns import RECURRENT, STEADY_FACTOR, Recurrence, recurrence
+from undula.analysis.evidence import GROWTH_FACTOR, STEADY_SHAPE
+from undula.analysis.late import GOES_ROUND, PLANAR_TOLERANCE, Late, Name, below
+from undula.analysis.naming_held import ASIDE, held_name, rests
+from undula.analysis.returns import RECURRENT, STEADY_FACTOR
 from undula.analysis.trends import out_of_plane, shape_change, swing
-from undula.analysis.turning import Winding, sense_of_rotation, winding
 from undula.analysis.window import STATIONARY
-from undula.arrays import Array, Instants, Shapes
 
-# Largest change of shape up to turns in spinning, relative: far above integration errors, far below
-# any modulation that would deserve another name.
-SHAPE_TOLERANCE = 5e-3
 # A steady shape must be seen to come round once; in less it could grow or shrink unseen.
 MIN_TURNS = 1.0
-# Share out of the plane below which a motion is planar: a trace of the start that still decays.
-PLANAR_TOLERANCE = 0.02
 # Share out of the plane below which a beat in a turning plane still is one.
 PRECESSING_TOLERANCE = 0.2
 # What grows from less than this part of its tolerance is too small to be seen growing.
@@ -43,8 +34,6 @@ VISIBLE = 0.05
 # Share of the motion that its harmonics may leave unexplained: the highest ones of a violent
 # flapping, and one or two more where few samples a period make them fold together.
 PERIODIC_TOLERANCE = 0.05
-# Sense of rotation from which a motion goes round rather than to and fro.
-GOES_ROUND = 0.5
 # A plane that turns by less than a shape that comes back may be off, does not turn [rad a period].
 PRECESSES = RECURRENT
 # Coherence of the turning of a windmilling link: swings stay below 0.3, windmills above 0.7 (their
@@ -52,114 +41,25 @@ PRECESSES = RECURRENT
 WINDMILLS = 0.6
 # A windmilling link points backwards at times: its direction has this z component or less.
 BACKWARDS = -0.7
-# Fewer maxima than this do not show that a motion is irregular: with up to ten a period it would
-# have come back four times.
-MANY_MAXIMA = 40
-# A criterion met by less than this factor does not decide between two names.
-THIN = 1.05
 
 
-@dataclass(frozen=True)
-class Name:
-    """A name with one sentence and the factor by which its criteria are met, at least 1.
-
-    `unrest` tells what still changes, if the motion only looks settled.
-    """
-
-    name: str
-    reason: str
-    margin: float
-    unrest: str = ""
-
-
-@dataclass(frozen=True)
-class Late:
-    """The late window of a run, with what is measured only where it is asked for.
-
-    Attributes
-    ----------
-    time
-        Equally spaced times [T], shape ``(m,)``.
-    nodes
-        Node positions [L], shape ``(m, N + 1, 3)``.
-    seen
-        What every window is measured for.
-    """
-
-    time: Instants
-    nodes: Shapes
-    seen: Evidence
-
-    @cached_property
-    def back(self) -> Recurrence | None:
-        """How the shape comes back."""
-        return recurrence(self.time, self.nodes)
-
-    @cached_property
-    def sense(self) -> float:
-        """Sense of rotation, from -1 to 1."""
-        return sense_of_rotation(self.nodes)
-
-    @cached_property
-    def winding(self) -> Winding:
-        """Turning of the links about axes across z."""
-        return winding(self.nodes)
-
-    @property
-    def plane_turn(self) -> float:
-        """Angle by which the plane of the beat turns until the shape comes back [rad]."""
-        # A half-turn is the mirror image of a beat in a plane, not a turning of the plane.
-        return (self.back.turn + 0.5 * np.pi) % np.pi - 0.5 * np.pi if self.back else 0.0
-
-    @cached_property
-    def beat_planarity(self) -> float:
-        """Share out of the plane of the beat when the slow turning of that plane is taken back."""
-        back = self.back
-        if back is None:
-            return self.seen.planarity
-        turned = -self.plane_turn / back.period * (self.time - self.time[0])
-        return planarity(_turned(self.nodes, turned))
-
-    @property
-    def irregular(self) -> bool:
-        """Whether so many maxima are seen that the shape ought to have come back, and has not."""
-        return self.back is not None and self.back.maxima >= MANY_MAXIMA and not self.back.repeats
-
-    def numbers(self) -> dict[str, float]:
-        """All that is a number, by name, for the record of the run."""
-        record = self.seen.numbers()
-        if "sense" in self.__dict__:
-            record["sense_of_rotation"] = self.sense
-        if "winding" in self.__dict__:
-            record["winding_coherence"] = float(self.winding.coherence.max())
-        if self.__dict__.get("back") is not None and self.back is not None:
-            record |= {
-                "maxima": float(self.back.maxima),
-                "maxima_a_period": float(self.back.every),
-                "recurrence_distance": self.back.distance,
-                "shape_period": self.back.period,
-                "turn_a_period": self.back.turn,
-            }
-        return record
-
-
-def steady(seen: Evidence) -> bool:
-    """Whether the shape does not change, up to turns."""
-    return seen.shape_change <= SHAPE_TOLERANCE
+def steady(late: Late) -> Name | None:
+    """Return the name of a steady shape: one that is seen to turn, or rests where it is held."""
+    return spins(late) if late.axisymmetric else rests(late)
 
 
 def spins(late: Late) -> Name | None:
     """Return the name of a steady shape that is seen to turn."""
     seen = late.seen
-    if not steady(seen) or abs(seen.turns) < MIN_TURNS:
+    if not seen.steady or abs(seen.turns) < MIN_TURNS:
         return None
     change = shape_change(late.nodes)
-    grows = change.grows(STEADY_FACTOR, VISIBLE * SHAPE_TOLERANCE)
+    grows = change.grows(STEADY_FACTOR, VISIBLE * STEADY_SHAPE)
     return Name(
         "spinning",
         f"rotates steadily: over {seen.turns:.3g} turns its shape changes by"
         f" {seen.shape_change:.2g} of itself",
-        min(_below((seen.shape_change, SHAPE_TOLERANCE)), abs(seen.turns) / MIN_TURNS),
+        min(below((seen.shape_change, STEADY_SHAPE)), abs(seen.turns) / MIN_TURNS),
         f"its shape changes more and more, by {change.last:.2g} lately" if grows else "",
     )
 
@@ -188,11 +88,12 @@ def flaps(late: Late) -> Name | None:
     repeats = seen.misfit <= PERIODIC_TOLERANCE and seen.drift <= STATIONARY
     if not (repeats and seen.planarity <= PLANAR_TOLERANCE):
         return None
+    aside = not late.axisymmetric and late.bias > ASIDE
     return Name(
-        "planar flapping",
+        "asymmetric flapping" if aside else "planar flapping",
         f"periodic over {seen.periods:.3g} periods with {seen.planarity:.2g} of the motion out of"
         " its plane",
-        _below((seen.planarity, PLANAR_TOLERANCE), (seen.misfit, PERIODIC_TOLERANCE)),
+        below((seen.planarity, PLANAR_TOLERANCE), (seen.misfit, PERIODIC_TOLERANCE)),
         _leaves_its_plane(late),
     )
 
@@ -206,7 +107,7 @@ def returning(late: Late) -> Name | None:
         f"its shape comes back every {back.period:.4g} T to {back.distance:.1g} of itself, turned"
         f" by {np.degrees(back.turn):.3g} degrees"
     )
-    return _kinematic(late, manner, _below((back.distance, RECURRENT)), _settles(late))
+    return _kinematic(late, manner, below((back.distance, RECURRENT)), _settles(late))
 
 
 def wandering(late: Late, parting: str) -> Name:
@@ -220,21 +121,23 @@ def wandering(late: Late, parting: str) -> Name:
 
 def _kinematic(late: Late, manner: str, margin: float, unrest: str) -> Name:
     """Name a motion by how it moves."""
+    if not late.axisymmetric:
+        return held_name(late, manner, margin, unrest)
     planar, sense = late.seen.planarity, abs(late.sense)
     if planar <= PLANAR_TOLERANCE:
-        margin = min(margin, _below((planar, PLANAR_TOLERANCE)))
+        margin = min(margin, below((planar, PLANAR_TOLERANCE)))
         told = f"{manner}, {planar:.2g} of it out of its plane"
         return Name("planar flapping", told, margin, unrest)
     if sense >= GOES_ROUND:
         told = f"{manner}; it goes round the axis"
         return Name("modulated spinning", told, min(margin, sense / GOES_ROUND), unrest)
-    margin = min(margin, _below((sense, GOES_ROUND)))
+    margin = min(margin, below((sense, GOES_ROUND)))
     beat, turn = late.beat_planarity, abs(late.plane_turn)
     told = f"{manner}; each beat is {beat:.2g} off a plane"
     if beat <= PRECESSING_TOLERANCE and turn >= PRECESSES:
-        margin = min(margin, _below((beat, PRECESSING_TOLERANCE)), turn / PRECESSES)
+        margin = min(margin, below((beat, PRECESSING_TOLERANCE)), turn / PRECESSES)
         return Name("precessing flapping", told, margin, unrest)
-    flat, turns = beat / PRECESSING_TOLERANCE, _below((turn, PRECESSES))
+    flat, turns = beat / PRECESSING_TOLERANCE, below((turn, PRECESSES))
     # One of the two tells it from a beat in a turning plane.
     return Name("non-planar flapping", told, min(margin, max(flat, turns)), unrest)
 
@@ -255,15 +158,3 @@ def _leaves_its_plane(late: Late) -> str:
     if share.first > max(PLANAR_TOLERANCE, GROWTH_FACTOR * share.last):
         return f"it settles into a plane, {share.first:.2g} and then {share.last:.2g} off it"
     return ""
-
-
-def _below(*criteria: tuple[float, float]) -> float:
-    """Return the least factor by which values stay below their limits, at most a hundred."""
-    return min(limit / max(value, 1e-2 * limit) for value, limit in criteria)
-
-
-def _turned(nodes: Shapes, angle: Array) -> Shapes:
-    """Return nodes (m, N + 1, 3) turned about z by angles (m,) [rad]."""
-    cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    x, y, z = nodes[..., 0], nodes[..., 1], nodes[..., 2]
-    return np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=-1)

@@ -13,21 +13,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from undula.analysis.alignment import comparison
 from undula.analysis.decay import LinearMotion
 from undula.analysis.evidence import measure
+from undula.analysis.late import THIN, Late, Name
 from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.missing import MIN_SAMPLES_PER_PERIOD, missing
-from undula.analysis.naming import (
-    THIN,
-    Late,
-    Name,
-    flaps,
-    returning,
-    spins,
-    steady,
-    wandering,
-    windmills,
-)
+from undula.analysis.naming import flaps, returning, steady, wandering, windmills
 from undula.analysis.observables import displacement
 from undula.analysis.returns import RECURRENT
 from undula.analysis.straightening import DECAY_FACTOR, Straightening, straightening
@@ -87,6 +79,7 @@ def first_verdict(
     rotation_angle: Instants,
     *,
     settled_from: float | None,
+    axisymmetric: bool = True,
 ) -> Verdict:
     """Judge a run by its whole shape over a late window.
 
@@ -103,6 +96,8 @@ def first_verdict(
     settled_from
         Time from which on the integrator saw the state repeat itself [T]; None when it did not, or
         was not asked: the window is then the longest late part that is stationary.
+    axisymmetric
+        Whether motions of the body that differ by a turn about z are the same.
 
     Returns
     -------
@@ -113,17 +108,22 @@ def first_verdict(
     if isinstance(fall, Verdict):
         return fall
     undecided: Verdict | None = None
+    compare = comparison(axisymmetric=axisymmetric)
     for start in _windows(time, nodes, bending_energy, settled_from):
         part = slice(start, None)
-        seen = measure(time[part], nodes[part], bending_energy[part], rotation_angle[part])
-        late = Late(time[part], nodes[part], seen)
+        late = Late(
+            time[part],
+            nodes[part],
+            measure(time[part], nodes[part], bending_energy[part], rotation_angle[part], compare),
+            axisymmetric,
+        )
         verdict = _verdict(late, fall)
         if verdict.name != UNDECIDED:
             return verdict
         undecided = undecided or verdict
         # A shorter window may leave a transient behind; of a lasting modulation it would only show
         # too little, so it is not asked.
-        if not seen.transient:
+        if not late.seen.transient:
             break
     return undecided or _too_few(time)
 
@@ -223,7 +223,7 @@ def _manner(motion: LinearMotion) -> str:
 def _verdict(late: Late, fall: Straightening) -> Verdict:
     """Name what a window shows, or say what is missing."""
     start = float(late.time[0])
-    found = spins(late) or windmills(late) or flaps(late)
+    found = steady(late) or windmills(late) or flaps(late)
     enough = _seen_enough(late, fall)
     if found is None and enough:
         found = returning(late)
@@ -245,4 +245,4 @@ def _seen_enough(late: Late, fall: Straightening) -> bool:
     """Whether the window shows a motion, not the growth or decay of a small one."""
     seen = late.seen
     sampled = seen.samples_per_period >= MIN_SAMPLES_PER_PERIOD
-    return not (steady(seen) or fall.falling or seen.growth is not None) and sampled
+    return not (seen.steady or fall.falling or seen.growth is not None) and sampled

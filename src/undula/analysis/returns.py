@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from undula.analysis.alignment import aligned_distance
+from undula.analysis.alignment import Compare, comparison
 from undula.analysis.observables import displacement
 from undula.arrays import Array, Instants, Shapes
 
@@ -77,7 +77,7 @@ class Recurrence:
         return enough and self.distance <= RECURRENT and self.worst <= STEADY_FACTOR * RECURRENT
 
 
-def recurrence(time: Instants, nodes: Shapes) -> Recurrence | None:
+def recurrence(time: Instants, nodes: Shapes, axisymmetric: bool = True) -> Recurrence | None:
     """Measure how the shape comes back; None with fewer than four maxima of the displacement.
 
     Parameters
@@ -86,8 +86,10 @@ def recurrence(time: Instants, nodes: Shapes) -> Recurrence | None:
         Equally spaced times [T], shape ``(m,)``.
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
+    axisymmetric
+        Whether turns about z do not count.
     """
-    away = displacement(nodes)
+    away, compare = displacement(nodes), comparison(axisymmetric=axisymmetric)
     size = float(np.sqrt(np.mean(away**2)))
     nearest = None
     for prominent in PROMINENT:
@@ -95,7 +97,7 @@ def recurrence(time: Instants, nodes: Shapes) -> Recurrence | None:
         most = min(MOST_MAXIMA, len(at) // (FEWEST_REPETITIONS + 1))
         found = []
         for every in range(1, most + 1):
-            found.append(_after(every, at, shapes, size))
+            found.append(_after(every, at, shapes, size, compare))
             if found[-1].repeats:
                 return found[-1]
         nearest = nearest or min(found, key=lambda one: one.distance, default=None)
@@ -172,9 +174,11 @@ def _between(nodes: Shapes, place: Array) -> Shapes:
     return shapes
 
 
-def _after(every: int, at: Instants, shapes: Sequence[Shapes], size: float) -> Recurrence:
+def _after(
+    every: int, at: Instants, shapes: Sequence[Shapes], size: float, compare: Compare
+) -> Recurrence:
     """Compare each shape with the one so many maxima later."""
-    there, before, after = (aligned_distance(near[every:], shapes[0][:-every]) for near in shapes)
+    there, before, after = (compare(near[every:], shapes[0][:-every]) for near in shapes)
     slope, bend = _parabola(before.distance**2, there.distance**2, after.distance**2)
     gained = np.divide(slope**2, 2.0 * bend, out=np.zeros_like(bend), where=bend > 0.0)
     distances = np.sqrt(np.maximum(there.distance**2 - gained, 0.0)) / size

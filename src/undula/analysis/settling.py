@@ -22,7 +22,7 @@ from typing import Literal
 
 import numpy as np
 
-from undula.analysis.alignment import aligned_distance
+from undula.analysis.alignment import Compare, aligned_distance, fixed_distance
 from undula.analysis.observables import displacement
 from undula.arrays import Array, Nodes
 
@@ -102,12 +102,15 @@ class Watch:
         Relative tolerance of the integration, which sets those of the verdict.
     start : float
         Displacement at the start, as the integrator measures it.
+    compare : callable
+        How shapes are compared.
     seen : int
         Maxima of the energy in all.
     """
 
     rtol: float
     start: float
+    compare: Compare = aligned_distance
     paces: deque[Pace] = field(default_factory=lambda: deque(maxlen=MOST_LOOKS))
     returns: deque[tuple[float, Nodes]] = field(
         default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MOST_MAXIMA)
@@ -138,6 +141,8 @@ class Watch:
 
     def settled(self) -> Settled | None:
         """Return how the motion has settled, None if it has not."""
+        if self.compare is fixed_distance:
+            return self._at_rest() or self._resting() or self._periodic()
         return self._at_rest() or self._steady() or self._periodic()
 
     def _at_rest(self) -> Settled | None:
@@ -165,8 +170,8 @@ class Watch:
             returns = list(self.returns)[-(REPETITIONS + 1) * lag :: lag]
             if len(returns) < REPETITIONS + 1:
                 return None
-            changes = [_change(earlier, later) for earlier, later in pairwise(returns)]
-            directed = _change(returns[0], returns[-1]) > DIRECTED * sum(changes)
+            changes = [self._change(earlier, later) for earlier, later in pairwise(returns)]
+            directed = self._change(returns[0], returns[-1]) > DIRECTED * sum(changes)
             remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol, directed=directed)
             if remaining is not None:
                 times = [time for time, _ in returns]
@@ -177,10 +182,22 @@ class Watch:
                 return Settled("periodic", times[0], remaining, period, last.turn)
         return None
 
+    def _change(self, earlier: tuple[float, Nodes], later: tuple[float, Nodes]) -> float:
+        """Return by how much the shape changes between two returns, relative to its size."""
+        return float(self.compare(earlier[1], later[1]).distance / displacement(later[1]))
 
-def _change(earlier: tuple[float, Nodes], later: tuple[float, Nodes]) -> float:
-    """Return by how much the shape changes from one return to another, relative to its size."""
-    return float(aligned_distance(earlier[1], later[1]).distance / displacement(later[1]))
+    def _resting(self) -> Settled | None:
+        """Judge a shape that stops: its speed over the rate at which that falls is to come."""
+        late = [pace for pace in self.paces if pace.time >= 0.5 * self.paces[-1].time]
+        first, last = late[0], late[-1]
+        span, size = last.time - first.time, last.displacement
+        if span <= 0.0 or size == 0.0 or last.shape_speed >= first.shape_speed:
+            return None
+        fall = math.log(first.shape_speed / last.shape_speed) / span if last.shape_speed else 0.0
+        remaining = last.shape_speed / (fall * size) if fall else 0.0
+        if remaining > TOLERANCE_IN_RTOL * self.rtol:
+            return None
+        return Settled("at rest", first.time, remaining, None, None)
 
 
 def _still_to_come(

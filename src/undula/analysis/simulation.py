@@ -14,6 +14,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from undula.analysis.alignment import comparison
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Pace, Settled, Watch
 from undula.arrays import Array, State
@@ -67,7 +68,8 @@ class Simulation:
         self._options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
         departure = self.model.departure(self.model.positions(first[:-RATES]))
-        self.watch = Watch(self.schedule.rtol, departure)
+        compare = comparison(axisymmetric=self.model.axisymmetric)
+        self.watch = Watch(self.schedule.rtol, departure, compare)
         self.marks.append(_copied(self.memory))
 
     @classmethod
