@@ -8,23 +8,30 @@ trajectory.
 import numpy as np
 
 from undula.analysis.motion import Motion
+from undula.analysis.regimes import straight_verdict
 from undula.analysis.settling import Watch
 from undula.analysis.simulation import Simulation
 
 #: A run with this many samples a period needs no close-up; one gets twice as many.
 ENOUGH_A_PERIOD = 24.0
 #: Periods in a close-up, if the marks reach back so far: frequencies gain with their square.
-PERIODS = 40.0
+PERIODS = 16.0
 #: Of a motion that has not settled, so many: an irregular one takes more to be told as such.
 PERIODS_UNSETTLED = 160.0
 #: Most samples of a close-up.
 MOST_SAMPLES = 8000
 
 
-def close_up(simulation: Simulation) -> Motion | None:
-    """Return the last periods of a simulation at fine intervals; None where its samples will do."""
+def close_up(simulation: Simulation, whole: Motion) -> Motion | None:
+    """Return the last periods of a simulation at fine intervals.
+
+    None where its samples will do, or where they, the whole motion, show that it returns to
+    straight: a decay is not seen better in its last part.
+    """
     fast, slow = _periods(simulation.watch, simulation.time)
     if fast is None or simulation.interval * ENOUGH_A_PERIOD <= fast:
+        return None
+    if straight_verdict(whole.time, whole.nodes) is not None:
         return None
     end = simulation.time
     periods = PERIODS if simulation.settled else PERIODS_UNSETTLED

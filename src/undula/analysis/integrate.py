@@ -9,8 +9,11 @@ from dataclasses import dataclass
 from types import FrameType
 from typing import Literal
 
+import numpy as np
+
 from undula.analysis.judging import Exponents
 from undula.analysis.regimes import UNDECIDED
+from undula.analysis.returns import RECURRENT
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.simulation import Simulation
@@ -147,6 +150,8 @@ def _irregular(simulation: Simulation) -> Run | None:
     """Return a run that waits for its motion to repeat itself if it is seen not to."""
     if simulation.schedule.until != "settled" or simulation.settled is not None:
         return None
+    if simulation.watch.returned().min(initial=np.inf) <= RECURRENT:
+        return None  # it does, but for a little, and takes its time to settle
     simulation.ending = Ending.IRREGULAR
     run = Run.of(simulation)
     if run.lyapunov is not None and run.verdict.name != UNDECIDED:

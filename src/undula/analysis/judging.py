@@ -11,7 +11,6 @@ from undula.analysis.regimes import (
     UNDECIDED,
     Verdict,
     first_verdict,
-    straight_verdict,
     with_exponents,
 )
 from undula.analysis.schedule import Schedule
@@ -75,8 +74,7 @@ def judge(
     model, schedule
         What ran, and how exactly.
     motions
-        The whole run, and its last periods at finer intervals if it needs them: these show all but
-        a decay.
+        The whole run, and its last periods at finer intervals if it needs them.
     last
         The integrator's vector at its end, shape ``(n,)``.
     settled
@@ -86,9 +84,8 @@ def judge(
     """
     whole, close = motions
     since = settled.since if settled else None
-    straight = None if close is None else straight_verdict(whole.time, whole.nodes)
-    motion = whole if close is None or straight is not None else close
-    judged = Judged(straight or _verdict(model, motion, since), motion)
+    motion = close or whole
+    judged = Judged(_verdict(model, motion, since), motion)
     asked = exponents is Exponents.ALWAYS
     if not asked and (judged.verdict.late is None or exponents is Exponents.NEVER):
         return judged

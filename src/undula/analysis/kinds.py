@@ -7,6 +7,14 @@ from typing import Any
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, follow_branch
 from undula.analysis.convergence import Converged, converge
+from undula.analysis.equilibrium import (
+    Equilibrium,
+    equilibrium_family,
+    equilibrium_judge,
+    equilibrium_start,
+    equilibrium_unknowns,
+    find_equilibrium,
+)
 from undula.analysis.flapping import (
     find_flapping,
     flapping_family,
@@ -64,7 +72,7 @@ class Kind:
     judge: Callable[[Model, str], Callable[[Any, Array, float], Any]]
 
 
-def _of_spinning(state: Spinning) -> dict[str, float]:
+def _of_spinning(state: Spinning | Equilibrium) -> dict[str, float]:
     return {
         "frequency": state.frequency,
         "bending_energy": state.bending_energy,
@@ -108,7 +116,18 @@ KINDS: Mapping[str, Kind] = {
         flapping_start,
         flapping_judge,
     ),
+    "equilibrium": Kind(
+        find_equilibrium,
+        equilibrium_family,
+        equilibrium_unknowns,
+        _of_spinning,
+        equilibrium_start,
+        equilibrium_judge,
+    ),
 }
+_NAMES = {Spinning: "spinning", Flapping: "flapping", Equilibrium: "equilibrium"}
+#: A state of any of these kinds.
+Solved = Spinning | Flapping | Equilibrium
 
 
 def kind_of(name: str) -> Kind:
@@ -124,7 +143,7 @@ def kind_of(name: str) -> Kind:
     return KINDS[name]
 
 
-def with_error(state: Spinning | Flapping) -> Spinning | Flapping:
+def with_error(state: Solved) -> Solved:
     """Return the state with the error of its frequency against many links, if there is a limit.
 
     The state is solved for once more with two thirds of the links, or twice as many if they are
@@ -133,8 +152,8 @@ def with_error(state: Spinning | Flapping) -> Spinning | Flapping:
     links = state.model.links
     other_links = 2 * links // 3 if links >= _MANY else 2 * links
     other = state.model.with_links(other_links)
-    if other is None:
-        return state
+    if other is None or isinstance(state, Equilibrium):
+        return state  # what rests has no frequency
     found = kind_named(state).find(other, state)
     if isinstance(found, NotFound):
         return state
@@ -151,7 +170,7 @@ def converged(
     ----------
     model : Model
         With the fewest links of those that the limit is taken from.
-    kind : {"spinning", "flapping"}
+    kind : {"spinning", "flapping", "equilibrium"}
     progress : callable, optional
         Called with each number of links before the state is solved for.
 
@@ -171,7 +190,7 @@ def converged(
 
 
 def follow(
-    state: Spinning | Flapping,
+    state: Solved,
     parameter: str,
     to: float,
     *,
@@ -182,7 +201,7 @@ def follow(
 
     Parameters
     ----------
-    state : Spinning or Flapping
+    state : Spinning, Flapping or Equilibrium
     parameter : str
         Name of the parameter, such as "load.force" or "model.drag_ratio".
     to : float
@@ -251,6 +270,6 @@ def follow_from_onset(
     return follow_branch(family, first.u, first.p, to, steps, progress, start=first, least=0.0)
 
 
-def kind_named(state: Spinning | Flapping) -> Kind:
+def kind_named(state: Solved) -> Kind:
     """Return the kind that a state is of."""
-    return KINDS["spinning" if isinstance(state, Spinning) else "flapping"]
+    return KINDS[_NAMES[type(state)]]

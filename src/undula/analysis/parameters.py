@@ -8,6 +8,11 @@ from undula.models.model import Model
 
 #: The parameter that most questions are about.
 FORCE = "load.force"
+#: Components of pairs of numbers, with the field and the index of each.
+_COMPONENTS = {
+    f"model.natural_curvature.{name}": ("natural_curvature", index)
+    for index, name in enumerate(("k1", "k2"))
+}
 
 
 def changed(model: Model, parameter: str, value: float) -> Model:
@@ -26,6 +31,8 @@ def changed(model: Model, parameter: str, value: float) -> Model:
         There is no such parameter, or the value is out of its range.
     """
     place, _, name = parameter.partition(".")
+    if parameter in _COMPONENTS and parameter in _numbers(model):
+        return _with_component(model, *_COMPONENTS[parameter], value)
     owner: Any = model.load if place == "load" else model if place == "model" else None
     field = getattr(owner, "__dataclass_fields__", {}).get(name)
     if field is None or not field.init or not is_number(getattr(owner, name)):
@@ -49,6 +56,9 @@ def value_of(model: Model, parameter: str) -> float:
     known = [name for name, kind in _numbers(model).items() if kind not in (int, "int")]
     if parameter not in known:
         raise InputError(f"nothing can be followed along {parameter}; take {' or '.join(known)}")
+    if parameter in _COMPONENTS:
+        name, index = _COMPONENTS[parameter]
+        return float(getattr(model, name)[index])
     place, name = parameter.split(".")
     return float(getattr(model.load if place == "load" else model, name))
 
@@ -72,9 +82,21 @@ def neighbours(model: Model, parameter: str, value: float) -> tuple[Model, Model
 
 def _numbers(model: Any) -> dict[str, Any]:
     """Return the declared types of a model's numbers and of its load's, by name."""
-    return {
+    numbers = {
         f"{place}.{field.name}": field.type
         for place, owner in (("load", model.load), ("model", model))
         for field in dataclasses.fields(owner)
         if field.init and is_number(getattr(owner, field.name))
     }
+    pairs = {
+        parameter: float
+        for parameter, (name, _) in _COMPONENTS.items()
+        if isinstance(getattr(model, name, None), tuple)
+    }
+    return numbers | pairs
+
+
+def _with_component(model: Any, name: str, index: int, value: float) -> Model:
+    pair = list(getattr(model, name))
+    pair[index] = float(value)
+    return model.with_(**{name: tuple(pair)})  # type: ignore[no-any-return]

@@ -72,7 +72,7 @@ class Run:
             ending=simulation.ending,
             cause=simulation.cause,
             motion=motion,
-            close_up=close_up(simulation),
+            close_up=close_up(simulation, motion),
             settled=simulation.settled,
             health=health_of(simulation, motion),
             checkpoint=simulation.checkpoint(),

@@ -17,7 +17,7 @@ import math
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, field
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Literal
 
 import numpy as np
@@ -35,6 +35,8 @@ NOISE_IN_RTOL = 10.0
 REPETITIONS = 5
 #: Beats or turns of a settled motion that a run goes on to show.
 SHOWN_CYCLES = 12
+#: A shape at rest is shown for this part more of the time that it took to come to rest.
+STILL = 1.25
 #: Most maxima of the energy that one period may have.
 MOST_MAXIMA = 8
 #: Looks at the pace that are kept.
@@ -53,7 +55,8 @@ class Settled:
 
     Attributes
     ----------
-    kind : {"at rest", "steady", "periodic"}
+    kind : {"at rest", "still", "steady", "periodic"}
+        Straight, bent and unmoved, turning with one shape, or coming back to it.
     since : float
         Time from which on it does, to the tolerance [T].
     remaining : float
@@ -64,7 +67,7 @@ class Settled:
         Time of one turn about the axis [T]; None without rotation.
     """
 
-    kind: Literal["at rest", "steady", "periodic"]
+    kind: Literal["at rest", "still", "steady", "periodic"]
     since: float
     remaining: float
     period: float | None
@@ -73,6 +76,8 @@ class Settled:
     @property
     def shown_until(self) -> float:
         """Time until which it should be seen, to measure its frequencies [T]."""
+        if self.kind == "still":
+            return STILL * self.since
         cycle = 2.0 * self.period if self.period else self.turn  # two mirror images a beat
         return self.since + SHOWN_CYCLES * (cycle or 0.0)
 
@@ -120,8 +125,8 @@ class Watch:
     def note(self, pace: Pace, returns: Sequence[tuple[float, Nodes]]) -> None:
         """Take down the pace at a look, and times and shapes at energy maxima since the last."""
         self.paces.append(pace)
-        self.returns.extend(returns)
         self.seen += len(returns)
+        self.returns.extend(returns)
 
     def to_arrays(self) -> dict[str, Array]:
         """Return all that was taken down, as arrays."""
@@ -166,10 +171,13 @@ class Watch:
         return Settled("steady", late[0].time, remaining, None, last.turn)
 
     def _periodic(self) -> Settled | None:
+        apart = self.returned()
         for lag in range(1, MOST_MAXIMA + 1):
-            returns = list(self.returns)[-(REPETITIONS + 1) * lag :: lag]
-            if len(returns) < REPETITIONS + 1:
+            if len(self.returns) < (REPETITIONS + 1) * lag:
                 return None
+            if apart[lag - 1] > TOLERANCE_IN_RTOL * self.rtol:
+                continue  # so that nearly all lags cost nothing
+            returns = [self.returns[-k * lag - 1] for k in range(REPETITIONS + 1)][::-1]
             changes = [self._change(earlier, later) for earlier, later in pairwise(returns)]
             directed = self._change(returns[0], returns[-1]) > DIRECTED * sum(changes)
             remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol, directed=directed)
@@ -181,6 +189,14 @@ class Watch:
                     return Settled("steady", times[0], remaining, None, last.turn)
                 return Settled("periodic", times[0], remaining, period, last.turn)
         return None
+
+    def returned(self) -> Array:
+        """Return how far the newest shape is from those at the maxima before, relative to it."""
+        before = [nodes for _, nodes in islice(reversed(self.returns), 1, MOST_MAXIMA + 1)]
+        if not before:
+            return np.zeros(0)
+        newest = self.returns[-1][1]
+        return np.asarray(self.compare(np.array(before), newest).distance / displacement(newest))
 
     def _change(self, earlier: tuple[float, Nodes], later: tuple[float, Nodes]) -> float:
         """Return by how much the shape changes between two returns, relative to its size."""
@@ -197,7 +213,7 @@ class Watch:
         remaining = last.shape_speed / (fall * size) if fall else 0.0
         if remaining > TOLERANCE_IN_RTOL * self.rtol:
             return None
-        return Settled("at rest", first.time, remaining, None, None)
+        return Settled("still", last.time, remaining, None, None)
 
 
 def _still_to_come(

@@ -1,6 +1,6 @@
 """Forces at which a state gains or loses stability, without a single run.
 
-- `onset`: the straight state is lost (a Hopf point);
+- `onset`: the straight state is lost (a Hopf point), of a curved filament the bent state at rest;
 - `spinning-lost`: the spinning branch, followed up from its beginning, loses stability;
 - `flapping-gained`, `flapping-lost`: planar flapping becomes stable against all disturbances,
   those out of its plane included, and ceases to be.
@@ -26,6 +26,8 @@ from undula.models.model import Model
 FARTHEST = 12.0
 # Branches of states begin a little above the onset, where their amplitude is no longer small.
 _BEGINNING = 1.02
+# Up to this force the loss of an equilibrium is looked for [B/L^2]: as far as of the tip load's.
+_FARTHEST_AT_REST = FARTHEST * 38.0
 
 
 @dataclass(frozen=True)
@@ -79,11 +81,12 @@ class _Search:
 
 
 _SEARCHES: Mapping[str, _Search] = {
+    "onset": _Search("equilibrium", "lose stability", lambda one: one.loses),
     "spinning-lost": _Search("spinning", "lose stability", lambda one: one.loses),
     "flapping-gained": _Search("flapping", "become stable", lambda one: one.gains),
     "flapping-lost": _Search("flapping", "lose stability", lambda one: one.loses),
 }
-THRESHOLDS: tuple[str, ...] = ("onset", *_SEARCHES)
+THRESHOLDS: tuple[str, ...] = tuple(_SEARCHES)
 
 
 def threshold(
@@ -115,7 +118,7 @@ def threshold(
     """
     if kind not in THRESHOLDS:
         raise InputError(f"threshold {kind!r} is not known; take {', '.join(THRESHOLDS)}")
-    if kind == "onset":
+    if kind == "onset" and model.axisymmetric:
         return _onset(model)
     guess = near.at if near else None
 
@@ -196,10 +199,10 @@ def _search(
         found = found_again(near, model, FORCE, search.is_it, progress)
         if not isinstance(found, NotFound):
             return found
-    onset = critical_force(model, method="discrete", later=0)
-    if onset.force is None:
-        return NotFound(str(onset))
-    start, end = _BEGINNING * onset.force, FARTHEST * onset.force
+    ends = _ends(model, search.kind)
+    if isinstance(ends, NotFound):
+        return ends
+    start, end = ends
     begun = kind_of(search.kind).find(changed(model, FORCE, start))
     if isinstance(begun, NotFound):
         return begun
@@ -212,3 +215,13 @@ def _search(
         f" not {search.does} up to {branch.values.max():.6g}"
         + ("" if branch.complete else ", beyond which it was not followed")
     )
+
+
+def _ends(model: Model, kind: str) -> tuple[float, float] | NotFound:
+    """Return the forces between which a kind of state is followed."""
+    if kind == "equilibrium":
+        return 0.0, _FARTHEST_AT_REST
+    onset = critical_force(model, method="discrete", later=0)
+    if onset.force is None:
+        return NotFound(str(onset))
+    return _BEGINNING * onset.force, FARTHEST * onset.force

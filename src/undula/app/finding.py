@@ -3,9 +3,10 @@
 from typing import Any
 
 from undula.analysis.convergence import Converged
-from undula.analysis.kinds import converged, kind_of, with_error
+from undula.analysis.equilibrium import Equilibrium
+from undula.analysis.kinds import Solved, converged, kind_of, with_error
 from undula.analysis.observables import Range
-from undula.analysis.states import Flapping, NotFound, Spinning
+from undula.analysis.states import NotFound, Spinning
 from undula.app.answers import Told
 from undula.app.progress import searching
 from undula.app.run_text import with_error as with_digits
@@ -52,7 +53,7 @@ def not_found(reason: NotFound, title: str, units: Units) -> Told:
     return Told(answer, "\n".join(lines))
 
 
-def state_answer(state: Spinning | Flapping) -> dict[str, Any]:
+def state_answer(state: Solved) -> dict[str, Any]:
     """Return a state in plain JSON types."""
     shared = {
         "status": "done",
@@ -67,14 +68,15 @@ def state_answer(state: Spinning | Flapping) -> dict[str, Any]:
         "residual": state.residual,
         "power_balance_error": state.power_balance_error,
     }
-    if isinstance(state, Spinning):
-        return shared | {
-            "kind": "spinning",
+    if isinstance(state, Spinning | Equilibrium):
+        steady = {
             "bending_energy": state.bending_energy,
             "tip_radius": state.tip_radius,
             "tip_height": state.tip_height,
-            "trivial_rate": abs(state.trivial),
         }
+        if isinstance(state, Equilibrium):
+            return shared | {"kind": "equilibrium"} | steady
+        return shared | {"kind": "spinning"} | steady | {"trivial_rate": abs(state.trivial)}
     return shared | {
         "kind": "flapping",
         "bending_energy": _range(state.energy),

@@ -38,3 +38,26 @@ def directors_of(nodes: Nodes, turns: Array) -> Array:
     cosine, sine = np.cos(turns)[..., None], np.sin(turns)[..., None]
     turned = [cosine * first + sine * second, cosine * second - sine * first, tangents]
     return np.stack(turned, axis=-2)
+
+
+def unbent_links(natural: Array) -> Array:
+    """Return the tangents (N, 3) of links whose joints have their natural bends (N, 2) [rad].
+
+    The bends are about the directors below each joint, the first two at the clamp e_x and e_y.
+    """
+    frame, tangents = np.eye(3), []
+    for first, second in natural:
+        bend = first * frame[0] + second * frame[1]
+        frame = _rotated(frame, bend)
+        tangents.append(frame[2])
+    return np.array(tangents)
+
+
+def _rotated(vectors: Array, turn: Array) -> Array:
+    """Return vectors (k, 3) rotated by a rotation vector (3,), by Rodrigues' formula."""
+    angle = np.linalg.norm(turn)
+    once = np.cross(turn, vectors)
+    twice = np.cross(turn, once)
+    return np.asarray(
+        vectors + np.sinc(angle / np.pi) * once + 0.5 * np.sinc(0.5 * angle / np.pi) ** 2 * twice
+    )

@@ -10,7 +10,7 @@ import numpy as np
 
 from undula.arrays import Array, Links, State
 from undula.errors import InputError, is_number
-from undula.models.directors import directors_of
+from undula.models.directors import directors_of, unbent_links
 from undula.models.linked_rod import LinkedRod
 from undula.models.loads import DensityLoad
 from undula.models.natural_curvature import NaturalCurvature, accepted, of_pieces
@@ -204,6 +204,13 @@ class Filament(LinkedRod):
                 " and bending_ratio = 1"
             )
         return super().linearised()
+
+    def rest(self) -> State:
+        """Return the state in which nothing is bent, the equilibrium without a load."""
+        if not isinstance(self.system, FramedRod):
+            return self.straight()
+        tangents = np.cumsum(unbent_links(self.system.natural), axis=0)
+        return self.from_nodes(np.concatenate([np.zeros((1, 3)), tangents]) * self.system.link)
 
     def reflect(self, x: State) -> State:
         """Return the state reflected in the plane x = 0, unless natural curvature forbids it."""

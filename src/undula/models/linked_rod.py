@@ -215,6 +215,10 @@ class LinkedRod(ABC):
         x[:, -1] -= np.cumsum(system.link * carried / system.tensile)
         return x.ravel()
 
+    def rest(self) -> State:
+        """Return the state in which nothing is bent: straight, unless the body is curved."""
+        return self.straight()
+
     def nodes(self, x: State) -> Nodes:
         """Return the positions of all nodes in space, base first; axes in front are kept."""
         x = np.asarray(x).reshape(*np.shape(x)[:-1], self.links, self.dimension)

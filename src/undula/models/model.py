@@ -90,6 +90,9 @@ class Model(Protocol):
     def straight(self) -> State:
         """Return the straight state along the axis, an equilibrium."""
 
+    def rest(self) -> State:
+        """Return the state in which nothing is bent: straight, unless the body is curved."""
+
     def admissible(self, x: State) -> State:
         """Return the state near x that meets the model's constraints to round-off."""
 
