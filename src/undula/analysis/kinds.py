@@ -23,6 +23,14 @@ from undula.analysis.flapping import (
     flapping_unknowns,
 )
 from undula.analysis.parameters import FORCE, changed, value_of
+from undula.analysis.periodic_orbits import (
+    find_periodic,
+    periodic_family,
+    periodic_judge,
+    periodic_start,
+    periodic_unknowns,
+)
+from undula.analysis.periodic_state import Periodic
 from undula.analysis.spinning import (
     find_spinning,
     spinning_family,
@@ -82,7 +90,7 @@ def _of_spinning(state: Spinning | Equilibrium) -> dict[str, float]:
     }
 
 
-def _of_flapping(state: Flapping) -> dict[str, float]:
+def _of_periodic(state: Flapping | Periodic) -> dict[str, float]:
     ranges = {
         "bending_energy": state.energy,
         "tip_radius": state.tip_radius,
@@ -93,10 +101,16 @@ def _of_flapping(state: Flapping) -> dict[str, float]:
         for name, values in ranges.items()
         for part in ("min", "max", "mean")
     }
+    return {"frequency": state.frequency} | spread | {"leading_rate": state.leading_rate}
+
+
+def _of_flapping(state: Flapping) -> dict[str, float]:
     rates = {"leading_rate_in_plane": state.leading_rate_in_plane}
     if state.leading_rate_out_of_plane is not None:
         rates["leading_rate_out_of_plane"] = state.leading_rate_out_of_plane
-    return {"frequency": state.frequency} | spread | rates
+    told = _of_periodic(state)
+    del told["leading_rate"]  # the larger of the two
+    return told | rates
 
 
 KINDS: Mapping[str, Kind] = {
@@ -124,10 +138,23 @@ KINDS: Mapping[str, Kind] = {
         equilibrium_start,
         equilibrium_judge,
     ),
+    "periodic": Kind(
+        find_periodic,
+        periodic_family,
+        periodic_unknowns,
+        _of_periodic,
+        periodic_start,
+        periodic_judge,
+    ),
 }
-_NAMES = {Spinning: "spinning", Flapping: "flapping", Equilibrium: "equilibrium"}
+_NAMES = {
+    Spinning: "spinning",
+    Flapping: "flapping",
+    Equilibrium: "equilibrium",
+    Periodic: "periodic",
+}
 #: A state of any of these kinds.
-Solved = Spinning | Flapping | Equilibrium
+Solved = Spinning | Flapping | Equilibrium | Periodic
 
 
 def kind_of(name: str) -> Kind:
@@ -170,7 +197,7 @@ def converged(
     ----------
     model : Model
         With the fewest links of those that the limit is taken from.
-    kind : {"spinning", "flapping", "equilibrium"}
+    kind : {"spinning", "flapping", "equilibrium", "periodic"}
     progress : callable, optional
         Called with each number of links before the state is solved for.
 
@@ -201,7 +228,7 @@ def follow(
 
     Parameters
     ----------
-    state : Spinning, Flapping or Equilibrium
+    state : Spinning, Flapping, Equilibrium or Periodic
     parameter : str
         Name of the parameter, such as "load.force" or "model.drag_ratio".
     to : float

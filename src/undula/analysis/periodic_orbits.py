@@ -1,24 +1,31 @@
 """Motions that are periodic up to a turn, solved for: from a run, or where flapping gives birth.
 
+A body that is held in one direction, as one that is curved by nature, has none to be turned by: its
+motions are periodic as they are, x(t + T) = x(t), whether they go round or to and fro.
+
 Where planar flapping loses or gains stability by a real disturbance out of its plane, a motion out
 of the plane is born. In the frame of half a beat, turned by pi, both are x(t + T) = R(angle) x(t),
 so that the new branch is found along the null vector of these equations.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, UnresolvedError, follow_branch
 from undula.analysis.flapping import INTERVALS, METHOD, flapping_unknowns, in_space
+from undula.analysis.integrate import integrate
 from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.periodic_state import Periodic
 from undula.analysis.run import Run
+from undula.analysis.schedule import Ending
 from undula.analysis.spinning import require_space
 from undula.analysis.states import Flapping, NotFound
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model
-from undula.models.starts import from_state
+from undula.models.starts import from_state, kicked
 from undula.numerics.closure import Closure, Rotation
 from undula.numerics.continuation import Point, Steps
 from undula.numerics.floquet import floquet_of
@@ -33,16 +40,20 @@ from undula.numerics.orbits import (
 from undula.numerics.problem import DenseLinear
 from undula.numerics.shooting import Shooting, Shot
 
+# A run without a guess begins with this kick [rad] and takes this long at most [T].
+_KICK, _LONGEST = 0.1, 5.0
 
-def find_periodic(model: Model, guess: Run | Periodic) -> Periodic | NotFound:
-    """Solve for a motion that is periodic up to a turn about the axis.
+
+def find_periodic(model: Model, guess: Run | Periodic | None = None) -> Periodic | NotFound:
+    """Solve for a motion that is periodic, up to a turn about the axis if that is a symmetry.
 
     Parameters
     ----------
     model : Model
         In space.
-    guess : Run or Periodic
-        A run whose shape repeats itself, or the state of a similar model.
+    guess : Run or Periodic, optional
+        A run whose shape repeats itself, or the state of a similar model. Without one a run from a
+        small kick is taken.
 
     Returns
     -------
@@ -54,8 +65,20 @@ def find_periodic(model: Model, guess: Run | Periodic) -> Periodic | NotFound:
         The model is confined to a plane.
     """
     require_space(model)
+    if guess is None:
+        guess = integrate(model, kicked(model, _KICK), until="settled", limit=_LONGEST)
+        if guess.ending is Ending.INTERRUPTED:
+            raise KeyboardInterrupt  # which a run takes as its end, with what there is
     if isinstance(guess, Periodic):
         nodes, duration, angle = guess.nodes[-1], guess.duration, guess.angle
+    elif not model.axisymmetric:
+        period = _period(guess)
+        if period is None:
+            return NotFound(
+                f"the run does not repeat itself ({guess.verdict.name}); run until it has settled,"
+                " with until = 'settled', and for longer"
+            )
+        nodes, duration, angle = guess.motion.nodes[-1], period, 0.0
     else:
         shape, turning = guess.shape_frequency, guess.rotation_frequency
         if shape is None or turning is None or shape.value == 0.0:
@@ -66,13 +89,22 @@ def find_periodic(model: Model, guess: Run | Periodic) -> Periodic | NotFound:
         nodes, duration = guess.motion.nodes[-1], 1.0 / shape.value
         angle = 2.0 * np.pi * turning.value * duration
     start = model.admissible(from_state(model, nodes))
-    search = find_orbit(
-        _shooting(model, FORCE), np.concatenate([start, [duration, angle]]), model.load.force
-    )
+    last = [duration, angle] if model.axisymmetric else [duration]
+    search = find_orbit(_shooting(model, FORCE), np.concatenate([start, last]), model.load.force)
     if search.orbit is None:
         residual = search.solution.residual if search.solution else None
         return NotFound(f"no such motion was found from the guess: {search.advice}", residual)
     return _judged(model, search.orbit)
+
+
+def _period(run: Run) -> float | None:
+    """Return the time after which the shape of a run comes back as it is [T], if it does."""
+    if run.settled is not None and run.settled.period is not None:
+        return run.settled.period
+    seen = run.verdict.evidence
+    if "shape_period" in seen:
+        return seen["shape_period"]
+    return 1.0 / abs(run.frequency.value) if run.frequency and run.frequency.value else None
 
 
 def periodic_family(state: Periodic, parameter: str, scale: float) -> Family[Periodic]:
@@ -86,7 +118,8 @@ def periodic_family(state: Periodic, parameter: str, scale: float) -> Family[Per
 
 def periodic_unknowns(state: Periodic) -> Array:
     """Return the unknowns of a state in the equations of its family."""
-    return np.concatenate([state.start, [state.duration, state.angle]])
+    last = [state.duration, state.angle] if state.model.axisymmetric else [state.duration]
+    return np.concatenate([state.start, last])
 
 
 def follow_born(
@@ -161,20 +194,37 @@ def _shooting(model: Model, parameter: str) -> Shooting:
 
     return Shooting(
         equations_at=lambda p: changed(model, parameter, p).equations,
-        closure=Closure(rotation=Rotation(rotate, generator)),
-        intervals=INTERVALS,
+        closure=Closure(rotation=Rotation(rotate, generator) if model.axisymmetric else None),
+        # Half a beat takes as many as are enough for a shape that comes back turned.
+        intervals=INTERVALS if model.axisymmetric else 3 * INTERVALS,
         method=METHOD,
     )
 
 
-def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -> Family[Periodic]:
+def periodic_start(model: Model) -> None:  # noqa: ARG001
+    """Refuse to begin at an onset: other motions do."""
+    raise InputError(
+        "periodic motions begin where others lose stability; follow one from a number, as in"
+        " --along load.force=100:200"
+    )
+
+
+def periodic_judge(
+    model: Model, parameter: str
+) -> Callable[[OrbitProblem, Array, float], Periodic]:
+    """Return the function from a problem along a parameter and its solution to the state."""
+
     def judge(problem: OrbitProblem, u: Array, p: float) -> Periodic:
         orbit = orbit_at(problem, u, p)
         if orbit is None:
             raise UnresolvedError
         return _judged(changed(model, parameter, p), orbit)
 
-    return Family(parameter, problem, judge, _named, scale)
+    return judge
+
+
+def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -> Family[Periodic]:
+    return Family(parameter, problem, periodic_judge(model, parameter), _named, scale)
 
 
 def _judged(model: Model, orbit: Orbit) -> Periodic:

@@ -15,6 +15,8 @@ from undula.models.model import Model
 class Periodic:
     """A motion that repeats itself after a time, turned by an angle: x(t + T) = R(angle) x(t).
 
+    The angle is 0 for a body that is held in one direction.
+
     Modulated spinning, precessing flapping and other toroidal motions are of this kind.
 
     Attributes
@@ -32,6 +34,9 @@ class Periodic:
         Of disturbances [1/T], by falling real part, without trivial ones.
     trivial : tuple of float
         Errors of the multipliers of a shift in time and of a turn about the axis.
+    error : float or None
+        Estimated error of the frequency against the body that the links stand for [cycles per T],
+        None where the links are the body, or if it was not asked for.
     """
 
     model: Model
@@ -41,6 +46,7 @@ class Periodic:
     residual: float
     exponents: ComplexArray
     trivial: tuple[float, ...]
+    error: float | None = None
 
     @property
     def nodes(self) -> Shapes:
@@ -50,7 +56,8 @@ class Periodic:
     @property
     def start(self) -> Array:
         """The state of the model at the beginning, shape (size,)."""
-        return self.model.rotate(self.model.positions(self.unknowns[-1]), -self.angle)
+        end = self.model.positions(self.unknowns[-1])
+        return self.model.rotate(end, -self.angle) if self.model.axisymmetric else end
 
     @property
     def force(self) -> float:
@@ -70,7 +77,9 @@ class Periodic:
 
     @property
     def frequency(self) -> float:
-        """Turns per T, in the mean."""
+        """Turns per T, in the mean; repetitions of the motion where no turn is a symmetry."""
+        if not self.model.axisymmetric:
+            return self.shape_frequency
         return abs(self.turned) / (2.0 * np.pi * self.duration)
 
     @property

@@ -14,6 +14,7 @@ from typing import Any
 from undula.analysis.branch_records import Bifurcation
 from undula.analysis.branches import Progress
 from undula.analysis.convergence import converge
+from undula.analysis.equilibrium import Equilibrium
 from undula.analysis.kinds import follow, kind_of
 from undula.analysis.nearby import found_again, quantities_of
 from undula.analysis.parameters import FORCE, changed
@@ -187,8 +188,10 @@ def _numbers(found: Bifurcation[Any]) -> dict[str, float]:
 def _threshold(
     kind: str, at: Bifurcation[Any], numbers: Mapping[str, float], error: float
 ) -> Threshold:
-    second = numbers["second_frequency"] or None
-    return Threshold(kind, numbers["value"], error, numbers["frequency"], second, at.kind, at=at)
+    frequency, second = numbers["frequency"], numbers["second_frequency"] or None
+    if isinstance(at.state, Equilibrium):
+        frequency, second = second or 0.0, None  # what rests begins to swing
+    return Threshold(kind, numbers["value"], error, frequency, second, at.kind, at=at)
 
 
 def _search(

@@ -6,6 +6,7 @@ from undula.analysis.convergence import Converged
 from undula.analysis.equilibrium import Equilibrium
 from undula.analysis.kinds import Solved, converged, kind_of, with_error
 from undula.analysis.observables import Range
+from undula.analysis.periodic_state import Periodic
 from undula.analysis.states import NotFound, Spinning
 from undula.app.answers import Told
 from undula.app.progress import searching
@@ -77,14 +78,20 @@ def state_answer(state: Solved) -> dict[str, Any]:
         if isinstance(state, Equilibrium):
             return shared | {"kind": "equilibrium"} | steady
         return shared | {"kind": "spinning"} | steady | {"trivial_rate": abs(state.trivial)}
-    return shared | {
-        "kind": "flapping",
+    swinging = {
         "bending_energy": _range(state.energy),
         "tip_radius": _range(state.tip_radius),
         "tip_height": _range(state.tip_height),
+        "trivial_multiplier_error": max(state.trivial),
+    }
+    if isinstance(state, Periodic):
+        period = {"period": state.duration, "turn": state.angle}
+        return shared | {"kind": "periodic"} | swinging | period
+    return shared | {
+        "kind": "flapping",
+        **swinging,
         "leading_rate_in_plane": state.leading_rate_in_plane,
         "leading_rate_out_of_plane": state.leading_rate_out_of_plane,
-        "trivial_multiplier_error": max(state.trivial),
         "time_error": state.time_error,
     }
 
