@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from undula.analysis.evidence import Evidence
-from undula.analysis.observables import arc_weights, displacement, transverse, winding_angle
+from undula.analysis.observables import arc_weights, displacement, transverse
 from undula.analysis.planes import planarity
 from undula.analysis.returns import Recurrence, recurrence
 from undula.analysis.spectral import hann
@@ -99,9 +99,19 @@ class Late:
         return float(np.sqrt(np.sum(weights * np.abs(mean) ** 2)) / size)
 
     @cached_property
-    def drifts(self) -> tuple[float, float]:
-        """Turns of the tip about z in each half of the window, positive from x to y."""
-        angle = winding_angle(self.nodes) / (2.0 * np.pi)
+    def plane_turns(self) -> tuple[float, float]:
+        """Turns about z of the plane of the beat in each half of the window, with sign.
+
+        The direction in which the motion swings about its mean is that of the sum of w^2 over the
+        nodes, w = x + i y from the mean, which turns twice as fast, smoothed over a beat.
+        """
+        sides, weights = transverse(self.nodes), arc_weights(self.nodes.shape[1])
+        swing = sides - hann(len(sides)) @ sides
+        beat = 2 * len(sides) // max(1, self.back.maxima if self.back else 1)
+        smooth = np.convolve(swing**2 @ weights, hann(max(3, beat)), mode="valid")
+        if smooth.size < 3:
+            return 0.0, 0.0
+        angle = 0.5 * np.unwrap(np.angle(smooth)) / (2.0 * np.pi)
         middle = len(angle) // 2
         return float(angle[middle] - angle[0]), float(angle[-1] - angle[middle])
 
@@ -117,8 +127,8 @@ class Late:
             record["sense_of_rotation"] = self.sense
         if "bias" in self.__dict__:
             record["bias"] = self.bias
-        if "drifts" in self.__dict__:
-            record["tip_turns"] = sum(self.drifts)
+        if "plane_turns" in self.__dict__:
+            record["plane_turns"] = sum(self.plane_turns)
         if "winding" in self.__dict__:
             record["winding_coherence"] = float(self.winding.coherence.max())
         if self.__dict__.get("back") is not None and self.back is not None:

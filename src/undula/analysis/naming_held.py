@@ -19,10 +19,11 @@ from undula.analysis.late import GOES_ROUND, PLANAR_TOLERANCE, Late, Name, below
 #: Mean position over displacement from which a motion is to one side: what a few periods that are
 #: cut somewhere leave of a motion about the axis is a tenth of it.
 ASIDE = 0.05
-#: A tip that goes round the axis less than once in so many repetitions of the shape does not.
+#: A plane precesses if it goes round in at least so many maxima of the displacement, of which a
+#: beat has two: what turns faster is hardly a plane.
+FASTEST = 3.0
+#: In more than so many, it does not.
 SLOWEST = 50.0
-#: Turns in either half of a window that count as going round.
-FEWEST_TURNS = 0.5
 
 
 def rests(late: Late) -> Name | None:
@@ -39,16 +40,15 @@ def held_name(late: Late, manner: str, margin: float, unrest: str) -> Name:
     sense, aside = abs(late.sense), late.bias
     where = f"{manner}; its mean is {aside:.2g} of its displacement off the axis"
     margin = min(margin, max(aside / ASIDE, below((aside, ASIDE))))
+    rounds = _rounds(late)
+    if 1.0 / SLOWEST <= rounds <= 1.0 / FASTEST:
+        told = f"{manner}; its plane goes round in {1.0 / rounds:.3g} maxima of its displacement"
+        margin = min(margin, SLOWEST * rounds, below((rounds, 1.0 / FASTEST)))
+        return Name("precessing flapping", told, margin, unrest)
     if sense >= GOES_ROUND:
         word = "asymmetric spinning" if aside > ASIDE else "modulated spinning"
         return Name(word, f"{where}; it goes round", min(margin, sense / GOES_ROUND), unrest)
     margin = min(margin, below((sense, GOES_ROUND)))
-    rounds, slowest = _rounds(late), _slowest(late)
-    if rounds >= slowest:
-        told = f"{manner}; its plane goes round {sum(late.drifts):.3g} times in the window"
-        return Name("precessing flapping", told, min(margin, rounds / slowest), unrest)
-    if rounds > 0.0:
-        margin = min(margin, below((rounds, slowest)))
     if aside > ASIDE:
         return Name("asymmetric flapping", where, margin, unrest)
     planar = late.seen.planarity <= PLANAR_TOLERANCE
@@ -56,12 +56,7 @@ def held_name(late: Late, manner: str, margin: float, unrest: str) -> Name:
 
 
 def _rounds(late: Late) -> float:
-    """Return how often the tip goes round in either half of the window, 0 if to both sides."""
-    first, last = late.drifts
-    return min(abs(first), abs(last)) if first * last > 0.0 else 0.0
-
-
-def _slowest(late: Late) -> float:
-    """Return how often it has to go round in half a window to be said to."""
-    repetitions = late.back.maxima if late.back else 1
-    return max(FEWEST_TURNS, 0.5 * repetitions / SLOWEST)
+    """Return how often the plane goes round from one maximum to the next, 0 if to both sides."""
+    first, last = late.plane_turns
+    maxima = late.back.maxima if late.back else 1
+    return 2.0 * min(abs(first), abs(last)) / maxima if first * last > 0.0 else 0.0

@@ -13,8 +13,10 @@ from undula.views.stability import stability_portrait
 from undula.views.steps import step_diagram
 from undula.views.threshold_curves import threshold_curves
 from undula.views.thresholds import threshold_figure
+from undula.views.winding import Winding, winding_figure
 
 __all__ = [
+    "Winding",
     "basin_diagram",
     "bifurcation_diagram",
     "gallery",
@@ -28,4 +30,5 @@ __all__ = [
     "step_diagram",
     "threshold_curves",
     "threshold_figure",
+    "winding_figure",
 ]
