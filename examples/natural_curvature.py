@@ -40,7 +40,7 @@ def main(figure: str = "natural_curvature.png") -> None:
         ratios.append(abs(drift) / beat)
         print(f"F = {force:3g}: {run.verdict.name}, {drift:.4g} turns and {beat:.4g} rises per T")
         short = run.motion.late(UNTIL - 24.0 / beat)
-        drawn.append(un.views.Winding(f"$F$ = {force:g}", short.time, short.nodes, 5.0 / beat))
+        drawn.append(un.views.Winding(f"$F$ = {force:g}", short.time, short.nodes, 5.3 / beat))
     un.views.winding_figure(drawn).savefig(figure)
 
     # Once a cycle; a fifth; and hardly at all: once in fifty cycles would be slow.

@@ -56,13 +56,13 @@ def stability(
 
 
 def find(
-    kind: Annotated[str, typer.Argument(metavar="KIND", help="spinning or flapping.")],
+    kind: Annotated[str, typer.Argument(metavar="KIND", help="spinning, flapping, equilibrium or periodic.")],
     file: Input = None,
     changes: Changes = None,
     converge: Converge = False,
     as_json: Json = False,
 ) -> int:
-    """Solve for a spinning or a flapping state, and tell whether it is stable."""
+    """Solve for a state of a kind, and tell whether it is stable."""
     from undula.app import finding
     from undula.app.answers import DONE, notice, reply
     from undula.app.compiling import compilation_announced
@@ -77,7 +77,12 @@ def find(
 
 
 def follow(
-    kind: Annotated[str, typer.Argument(metavar="KIND", help="straight, spinning or flapping.")],
+    kind: Annotated[
+        str,
+        typer.Argument(
+            metavar="KIND", help="straight, spinning, flapping, equilibrium or periodic."
+        ),
+    ],
     along: Annotated[
         str,
         typer.Option(

@@ -120,6 +120,8 @@ def _point_at(problem: Problem, point: Point, p: float, scale: float) -> Point |
     return _tangent_from(there, problem, reached, scale)
 
 
+# Newton's method notices for itself that it has lost its way.
+@np.errstate(over="ignore", invalid="ignore")
 def advance(problem: Problem, point: Point, length: float, scale: float) -> Point | None:
     """Return the point of the branch at an arclength from a point, None if Newton's method fails.
 
@@ -157,6 +159,7 @@ def _tangent_from(there: Evaluation, problem: Problem, point: Point, scale: floa
     return replace(point, tangent=du / length, tangent_p=dp / length)
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def solved_at(problem: Problem, u: Array, p: float) -> tuple[Array, int] | None:
     """Return the solution near u at the parameter p with its iterations; None if there is none."""
     nothing = np.zeros_like(u)

@@ -15,8 +15,8 @@ from undula.views import style
 from undula.views.scene import Floats
 from undula.views.space import draw_shapes, space_axes
 
-_COLUMN, _HEIGHT = 3.1, 6.4
-_SHAPES = 16
+_LEFT, _COLUMN, _RIGHT, _HEIGHT = 0.5, 3.1, 0.25, 6.4
+_SHAPES = 24
 # What is drawn of a column, from below, in parts of the figure: height, angle, shapes.
 _LOWER, _MIDDLE, _UPPER = (0.085, 0.17), (0.315, 0.17), (0.53, 0.40)
 
@@ -65,8 +65,8 @@ def winding_figure(motions: Sequence[Winding]) -> Figure:
     if not motions:
         raise InputError("there are no motions to be drawn; give at least one")
     with style.figure_style():
-        figure = Figure(figsize=(0.5 + _COLUMN * len(motions), _HEIGHT))
-        left, width = 0.5 / figure.get_figwidth(), _COLUMN / figure.get_figwidth()
+        figure = Figure(figsize=(_LEFT + _COLUMN * len(motions) + _RIGHT, _HEIGHT))
+        left, width = _LEFT / figure.get_figwidth(), _COLUMN / figure.get_figwidth()
         for k, motion in enumerate(motions):
             _draw_column(figure, motion, left + k * width, width, first=k == 0)
     return figure
@@ -83,8 +83,8 @@ def _draw_column(
     draw_shapes(space, motion.nodes[picked])
     angle = winding_angle(motion.nodes)
     rows = (
-        (_MIDDLE, angle - angle[0], r"angle of the tip $\theta$  [rad]"),
-        (_LOWER, tip_height(motion.nodes), r"height of the tip $z$  $[L]$"),
+        (_MIDDLE, angle - angle[0], r"tip angle $\theta$  [rad]"),
+        (_LOWER, tip_height(motion.nodes), r"tip height $z$  $[L]$"),
     )
     for (low, high), values, name in rows:
         axes = figure.add_axes((left + 0.2 * width, low, 0.72 * width, high))
