@@ -56,7 +56,9 @@ def stability(
 
 
 def find(
-    kind: Annotated[str, typer.Argument(metavar="KIND", help="spinning, flapping, equilibrium or periodic.")],
+    kind: Annotated[
+        str, typer.Argument(metavar="KIND", help="spinning, flapping, equilibrium or periodic.")
+    ],
     file: Input = None,
     changes: Changes = None,
     converge: Converge = False,
