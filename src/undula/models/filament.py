@@ -200,8 +200,9 @@ class Filament(LinkedRod):
         if self.framed:
             raise InputError(
                 "small motions about the straight state are those of a filament without natural"
-                " curvature that bends alike about both directors; use natural_curvature = (0, 0)"
-                " and bending_ratio = 1"
+                " curvature that bends alike about both directors: use natural_curvature = (0, 0)"
+                " and bending_ratio = 1, or ask for its equilibrium, its threshold onset, or a"
+                " periodic motion"
             )
         return super().linearised()
 
