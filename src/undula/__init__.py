@@ -15,11 +15,13 @@ if TYPE_CHECKING:
     from undula.analysis.births import births
     from undula.analysis.borders import solved_borders
     from undula.analysis.disagreements import disagreements
+    from undula.analysis.equilibrium import Equilibrium, find_equilibrium
     from undula.analysis.flapping import find_flapping
     from undula.analysis.integrate import integrate
     from undula.analysis.kinds import converged, follow, follow_from_onset
     from undula.analysis.lyapunov import lyapunov
     from undula.analysis.periodic_orbits import find_periodic, follow_born
+    from undula.analysis.periodic_state import Periodic
     from undula.analysis.record import dataset_of
     from undula.analysis.run import Run
     from undula.analysis.solved_points import solved_line
@@ -49,11 +51,13 @@ _HOMES = {
     "BeadLoad": "undula.models.beads",
     "Chain": "undula.models.chain",
     "CurvatureTable": "undula.models.natural_curvature",
+    "Equilibrium": "undula.analysis.equilibrium",
     "Filament": "undula.models.filament",
     "Flapping": "undula.analysis.states",
     "InputError": "undula.errors",
     "LinearLoad": "undula.models.loads",
     "Load": "undula.models.loads",
+    "Periodic": "undula.analysis.periodic_state",
     "PointLoad": "undula.models.loads",
     "PowerLoad": "undula.models.loads",
     "ProfileLoad": "undula.models.profiles",
@@ -69,6 +73,7 @@ _HOMES = {
     "critical_force": "undula.analysis.stability",
     "dataset_of": "undula.analysis.record",
     "disagreements": "undula.analysis.disagreements",
+    "find_equilibrium": "undula.analysis.equilibrium",
     "find_flapping": "undula.analysis.flapping",
     "find_periodic": "undula.analysis.periodic_orbits",
     "find_spinning": "undula.analysis.spinning",
@@ -100,11 +105,13 @@ __all__ = [
     "BeadLoad",
     "Chain",
     "CurvatureTable",
+    "Equilibrium",
     "Filament",
     "Flapping",
     "InputError",
     "LinearLoad",
     "Load",
+    "Periodic",
     "PointLoad",
     "PowerLoad",
     "ProfileLoad",
@@ -120,6 +127,7 @@ __all__ = [
     "critical_force",
     "dataset_of",
     "disagreements",
+    "find_equilibrium",
     "find_flapping",
     "find_periodic",
     "find_spinning",
