@@ -1,6 +1,9 @@
 """Lyapunov exponents of filaments and chains: known ones, and signs of chaos."""
 
+import json
 from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,6 +12,7 @@ import undula as un
 from refusal import complaint
 from undula.analysis.finite_separation import Separation, finite_separation
 from undula.analysis.lyapunov import Lyapunov, lyapunov
+from undula.app.cli import main
 from undula.arrays import Array
 from undula.models.model import Model
 
@@ -183,3 +187,36 @@ def test_joints_that_have_wound_up_are_followed_but_not_started_from_again() -> 
     assert found.symmetries == 1
     assert abs(found.value) <= found.error
     assert "wound up" in complaint(lambda: finite_separation(model, last(run), 1.0))
+
+
+def answer(
+    capsys: pytest.CaptureFixture[str], folder: Path, *changes: str, status: int = 0
+) -> dict[str, Any]:
+    words = [part for change in ("model.segments=20", *changes) for part in ("--set", change)]
+    out = ["--out", str(folder), "--no-movie", "--json"]
+    assert main(["run", *words, "--lyapunov", *out]) == status
+    told = json.loads(capsys.readouterr().out)
+    assert isinstance(told, dict)
+    return told
+
+
+def test_a_run_answers_with_its_exponents_if_asked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = answer(capsys, tmp_path, "load.force=75", "time.until=0.5")
+    found = told["lyapunov"]
+    assert abs(found["value"]) <= found["error"]
+    state = un.find_spinning(filament(75.0))
+    away = abs(found["beyond_symmetry"] - state.leading_rate)
+    assert away <= ERRORS * found["beyond_symmetry_error"]
+    assert found["finite_separation"]["error"] > 0.0
+    assert told["without_lyapunov"] is None
+
+
+def test_a_run_that_ends_straight_says_why_it_has_no_exponents(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = answer(capsys, tmp_path, "load.force=15", "time.until=0.5")
+    assert told["verdict"] == "straight"
+    assert told["lyapunov"] is None
+    assert "ask undula stability" in told["without_lyapunov"]

@@ -38,6 +38,7 @@ from undula.analysis.spinning import (
     spinning_start,
     spinning_unknowns,
 )
+from undula.analysis.state_numbers import of_flapping, of_periodic, of_steady
 from undula.analysis.states import Flapping, NotFound, Spinning
 from undula.arrays import Array
 from undula.errors import InputError
@@ -80,45 +81,12 @@ class Kind:
     judge: Callable[[Model, str], Callable[[Any, Array, float], Any]]
 
 
-def _of_spinning(state: Spinning | Equilibrium) -> dict[str, float]:
-    return {
-        "frequency": state.frequency,
-        "bending_energy": state.bending_energy,
-        "tip_radius": state.tip_radius,
-        "tip_height": state.tip_height,
-        "leading_rate": state.leading_rate,
-    }
-
-
-def _of_periodic(state: Flapping | Periodic) -> dict[str, float]:
-    ranges = {
-        "bending_energy": state.energy,
-        "tip_radius": state.tip_radius,
-        "tip_height": state.tip_height,
-    }
-    spread = {
-        f"{name}_{part}": getattr(values, part)
-        for name, values in ranges.items()
-        for part in ("min", "max", "mean")
-    }
-    return {"frequency": state.frequency} | spread | {"leading_rate": state.leading_rate}
-
-
-def _of_flapping(state: Flapping) -> dict[str, float]:
-    rates = {"leading_rate_in_plane": state.leading_rate_in_plane}
-    if state.leading_rate_out_of_plane is not None:
-        rates["leading_rate_out_of_plane"] = state.leading_rate_out_of_plane
-    told = _of_periodic(state)
-    del told["leading_rate"]  # the larger of the two
-    return told | rates
-
-
 KINDS: Mapping[str, Kind] = {
     "spinning": Kind(
         find_spinning,
         spinning_family,
         spinning_unknowns,
-        _of_spinning,
+        of_steady,
         spinning_start,
         spinning_judge,
     ),
@@ -126,7 +94,7 @@ KINDS: Mapping[str, Kind] = {
         find_flapping,
         flapping_family,
         flapping_unknowns,
-        _of_flapping,
+        of_flapping,
         flapping_start,
         flapping_judge,
     ),
@@ -134,7 +102,7 @@ KINDS: Mapping[str, Kind] = {
         find_equilibrium,
         equilibrium_family,
         equilibrium_unknowns,
-        _of_spinning,
+        of_steady,
         equilibrium_start,
         equilibrium_judge,
     ),
@@ -142,7 +110,7 @@ KINDS: Mapping[str, Kind] = {
         find_periodic,
         periodic_family,
         periodic_unknowns,
-        _of_periodic,
+        of_periodic,
         periodic_start,
         periodic_judge,
     ),
