@@ -17,5 +17,7 @@ Nodes = Array
 Shapes = Array
 #: A state of a model, shape (size,).
 State = Array
+#: Whole numbers that point into other arrays.
+Indices = NDArray[np.intp]
 #: Any complex array.
 ComplexArray = NDArray[np.complex128]

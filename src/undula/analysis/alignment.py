@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from undula.analysis.observables import arc_weights, transverse
+from undula.analysis.observables import arc_weights, as_shapes
+from undula.analysis.shape_sums import align
 from undula.arrays import Array
 
 
@@ -45,13 +47,18 @@ def aligned_distance(shape_a: Array, shape_b: Array) -> Alignment:
     Alignment
         Each part of the shape that is left of ``...``.
     """
-    weights = arc_weights(shape_a.shape[-2])
-    a, b = transverse(shape_a), transverse(shape_b)
-    angle = np.angle(np.sum(weights * a * b.conj(), axis=-1))
-    sideways = np.abs(a - np.exp(1j * angle)[..., None] * b) ** 2
-    upright = (shape_a[..., 2] - shape_b[..., 2]) ** 2
-    square = np.sum(weights * (sideways + upright), axis=-1)
-    return Alignment(distance=np.asarray(np.sqrt(square)), angle=np.asarray(angle))
+    pairs = np.broadcast_shapes(shape_a.shape[:-2], shape_b.shape[:-2])
+    a, b = (_whole_or_one(shape, pairs) for shape in (shape_a, shape_b))
+    distance, angle = np.empty(math.prod(pairs)), np.empty(math.prod(pairs))
+    align(a, b, arc_weights(shape_a.shape[-2]), distance, angle)
+    return Alignment(distance.reshape(pairs), angle.reshape(pairs))
+
+
+def _whole_or_one(shape: Array, pairs: tuple[int, ...]) -> Array:
+    """Return all that belong to the pairs, in their order, or the one that belongs to each."""
+    if shape.ndim > 2 and shape.shape[:-2] != pairs:
+        shape = np.broadcast_to(shape, (*pairs, *shape.shape[-2:]))
+    return as_shapes(shape)
 
 
 def fixed_distance(shape_a: Array, shape_b: Array) -> Alignment:

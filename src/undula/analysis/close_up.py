@@ -1,56 +1,92 @@
 """The last periods of a run, sampled more finely than the rest.
 
 A long run has too few samples a period to tell what it does or to draw it. Its last periods are
-then computed once more from a mark that the simulation has kept, which gives the very same
-trajectory.
+then taken from what was noted of them on the way, or computed once more from a mark that the
+simulation has kept, which gives the very same trajectory.
 """
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from undula.analysis.motion import Motion
-from undula.analysis.regimes import straight_verdict
-from undula.analysis.settling import Watch
-from undula.analysis.simulation import Simulation
+from undula.analysis.recent import FEWEST
+from undula.analysis.schedule import Schedule
+from undula.analysis.simulation import ENOUGH_A_PERIOD, Simulation, sampled_again
+from undula.arrays import Array, Instants
+from undula.models.model import Model
+from undula.numerics.memory import Memory
 
-#: A run with this many samples a period needs no close-up; one gets twice as many.
-ENOUGH_A_PERIOD = 24.0
 #: Periods in a close-up, if the marks reach back so far: frequencies gain with their square.
 PERIODS = 16.0
 #: Of a motion that has not settled, so many: an irregular one takes more to be told as such.
 PERIODS_UNSETTLED = 160.0
-#: Most samples of a close-up.
+#: What repeats itself is judged from where it does so.
+REPEATING = ("steady", "periodic")
+#: A close-up that has as many samples is made no finer.
 MOST_SAMPLES = 8000
 
 
-def close_up(simulation: Simulation, whole: Motion) -> Motion | None:
-    """Return the last periods of a simulation at fine intervals.
+@dataclass(frozen=True)
+class CloseUp:
+    """The last periods of a run at fine intervals, made when somebody asks.
 
-    None where its samples will do, or where they, the whole motion, show that it returns to
-    straight: a decay is not seen better in its last part.
+    Attributes
+    ----------
+    model, schedule
+        Those of the run.
+    mark : Memory
+        The integrator's at its beginning or before.
+    time : ndarray, shape (m,)
+        Equally spaced times [T].
+    noted : ndarray or None
+        The samples, shape (m, n + RATES), if they were noted on the way.
     """
-    fast, slow = _periods(simulation.watch, simulation.time)
-    if fast is None or simulation.interval * ENOUGH_A_PERIOD <= fast:
-        return None
-    if straight_verdict(whole.time, whole.nodes) is not None:
+
+    model: Model
+    schedule: Schedule
+    mark: Memory
+    time: Instants
+    noted: Array | None
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The trajectory."""
+        states = self.noted
+        if states is None:
+            states = sampled_again(self.model, self.schedule, self.mark, self.time)
+        return Motion.of(self.model, self.time, states)
+
+
+def close_up(simulation: Simulation) -> CloseUp | None:
+    """Return the last periods of a simulation at fine intervals; None where its samples will do."""
+    fast, slow = simulation.watch.periods(simulation.time)
+    interval = simulation.interval
+    if fast is None or interval * ENOUGH_A_PERIOD <= fast:
         return None
     end = simulation.time
     periods = PERIODS if simulation.settled else PERIODS_UNSETTLED
-    start = max(end - periods * slow, simulation.earliest_mark)
-    interval = max(0.5 * fast / ENOUGH_A_PERIOD, (end - start) / MOST_SAMPLES)
-    count = int((end - start) / interval)
-    if count < 2:
+    start = max(end - periods * slow, simulation.earliest_mark, _repeating_from(simulation))
+    # Powers of two, so that there are samples at the same times whoever makes them.
+    parts = 1
+    while interval * FEWEST > parts * fast and parts * (end - start) < MOST_SAMPLES * interval:
+        parts *= 2
+    first, last = math.ceil(start * parts / interval), (simulation.sampled - 1) * parts
+    if last - first < 2:
         return None
     # Round-off must not put the first before the mark.
-    times = np.maximum(end - interval * np.arange(count, -1, -1, dtype=np.float64), start)
-    return Motion.of(simulation.model, times, simulation.again(times))
+    times = np.maximum(interval / parts * np.arange(first, last + 1), start)
+    return CloseUp(
+        simulation.model,
+        simulation.schedule,
+        simulation.mark_before(times[0]),
+        times,
+        simulation.recent.samples(interval / parts, first, last),
+    )
 
 
-def _periods(watch: Watch, duration: float) -> tuple[float | None, float]:
-    """Return the shortest and the longest period at work late in the run [T]."""
-    returns = [time for time, _ in watch.returns]
-    candidates = [watch.paces[-1].turn] if watch.paces else []
-    if len(returns) > 2:
-        beat = 2.0 * (returns[-1] - returns[0]) / (len(returns) - 1)  # two maxima of energy a beat
-        candidates.append(beat)
-    periods = [period for period in candidates if period and period <= duration]
-    return (min(periods), max(periods)) if periods else (None, duration)
+def _repeating_from(simulation: Simulation) -> float:
+    settled = simulation.settled
+    return settled.since if settled is not None and settled.kind in REPEATING else 0.0

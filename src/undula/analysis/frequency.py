@@ -15,7 +15,13 @@ from undula.analysis.observables import mean_position, tip_height, transverse
 from undula.analysis.spectral import hann
 from undula.arrays import Array, Instants, Shapes
 
-__all__ = ["Frequency", "rotation_frequency", "shape_frequency", "whole_motion_frequency"]
+__all__ = [
+    "Frequency",
+    "rotation_frequency",
+    "shape_frequency",
+    "shape_swings",
+    "whole_motion_frequency",
+]
 
 # A quantity that varies by less than this share of its mean does not oscillate: integration errors
 # at default tolerances are below it by a factor of ten or more.
@@ -72,12 +78,22 @@ def shape_frequency(time: Instants, nodes: Shapes, bending_energy: Instants) -> 
         Positive. None when both quantities are steady to 1e-4 of their mean (the height: of the
         mean drop of the tip below 1), or for the reasons given for the whole motion.
     """
-    drop, energy = _relative(1.0 - tip_height(nodes)), _relative(bending_energy)
-    moving = [values / np.std(values) for values in (drop, energy) if np.std(values) > STEADY]
+    moving = _swinging(nodes, bending_energy)
     if not moving:
         return None
     signals = np.stack(moving, axis=1).astype(np.complex128)
     return find_frequency(time, signals, longest_period=LONGEST_PERIOD)
+
+
+def shape_swings(nodes: Shapes, bending_energy: Instants) -> bool:
+    """Whether there is anything for `shape_frequency` to find."""
+    return bool(_swinging(nodes, bending_energy))
+
+
+def _swinging(nodes: Shapes, bending_energy: Instants) -> list[Instants]:
+    """Return the quantities that oscillate, with standard deviation 1."""
+    both = (_relative(1.0 - tip_height(nodes)), _relative(bending_energy))
+    return [values / np.std(values) for values in both if np.std(values) > STEADY]
 
 
 def rotation_frequency(time: Instants, rotation_angle: Instants) -> Frequency | None:

@@ -11,6 +11,7 @@ from undula.analysis.harmonics import (
     HarmonicFit,
     fit_harmonics,
     harmonic_count,
+    misfit_at,
     refined,
 )
 from undula.analysis.spectral import spectral_peak
@@ -96,22 +97,40 @@ def _fundamental(
     time: Instants, signals: ComplexArray, guess: float, subharmonic: int = 1
 ) -> HarmonicFit | None:
     """Fit over the whole window, if the window and the sampling allow one."""
-    span = float(time[-1] - time[0])
-    rate = (len(time) - 1) / span
-    if guess * span < MIN_PERIODS or subharmonic * guess * MIN_SAMPLES_PER_PERIOD > rate:
+    if not _seen(time, guess, subharmonic):
         return None
     harmonics = harmonic_count(time, guess, subharmonic * MAX_HARMONICS)
     return fit_harmonics(time, signals, guess, harmonics=harmonics)
+
+
+def _seen(time: Instants, guess: float, subharmonic: int) -> bool:
+    span = float(time[-1] - time[0])
+    rate = (len(time) - 1) / span
+    return guess * span >= MIN_PERIODS and subharmonic * guess * MIN_SAMPLES_PER_PERIOD <= rate
+
+
+def _worth_fitting(
+    time: Instants, signals: ComplexArray, line: HarmonicFit, factor: int, least: float
+) -> bool:
+    """Whether a period so many times longer, unrefined, leaves about as little as it has to."""
+    guess = line.frequency / factor
+    if not _seen(time, guess, factor):
+        return False
+    harmonics = harmonic_count(time, guess, factor * MAX_HARMONICS)
+    # What refining could still mend: at the line's own frequency little.
+    return misfit_at(time, signals, guess, harmonics=harmonics) < 2.0 * SUBHARMONIC_GAIN * least
 
 
 def _longest_needed(
     time: Instants, signals: ComplexArray, guess: float, longest_period: int
 ) -> HarmonicFit | None:
     """Fit the strongest line, or a longer period where the signals need one."""
-    chosen = _fundamental(time, signals, guess)
+    chosen = line = _fundamental(time, signals, guess)
     for factor in range(2, longest_period + 1):
-        if chosen is None or chosen.misfit <= SUBHARMONIC_FLOOR:
+        if line is None or chosen is None or chosen.misfit <= SUBHARMONIC_FLOOR:
             break
+        if not _worth_fitting(time, signals, line, factor, chosen.misfit):
+            continue
         longer = _fundamental(time, signals, guess / factor, factor)
         if longer is not None and longer.misfit < SUBHARMONIC_GAIN * chosen.misfit:
             chosen = longer
@@ -126,7 +145,7 @@ def _with_error(time: Instants, signals: ComplexArray, fit: HarmonicFit) -> Freq
     spread = 0.0
     for where, taper in ((everywhere, 2), (first, 1), (last, 1)):
         other = refined(
-            time[where], signals[where], fit.frequency, harmonics=harmonics, taper=taper
+            time[where], signals[where], fit.frequency, harmonics=harmonics, taper=taper, steps=1
         )
         if other is None:
             return None

@@ -11,10 +11,12 @@ so one variable is left, refined by Gauss-Newton with the harmonics projected ou
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import toeplitz
 
+from undula.analysis.harmonic_sums import harmonic_sums
 from undula.analysis.spectral import hann
 from undula.arrays import Array, ComplexArray, Instants
 
@@ -24,8 +26,9 @@ MAX_HARMONICS = 6
 TOP_FREQUENCY = 0.45
 # From the peak of a spectrum Gauss-Newton gains two or more digits a step; ten are never needed.
 NEWTON_STEPS = 10
-# Newton stops at a change of this many windings over the whole window: far below any noise.
-NEWTON_TOLERANCE = 1e-13
+# Newton stops at a change of this many windings over the whole window: what is left is smaller by
+# those digits, and far below any noise.
+NEWTON_TOLERANCE = 1e-11
 
 
 @dataclass(frozen=True)
@@ -96,19 +99,33 @@ def refined(
     *,
     harmonics: int,
     taper: int = 1,
+    steps: int = NEWTON_STEPS,
 ) -> float | None:
-    """Return the frequency alone that `fit_harmonics` finds, which is quicker."""
+    """Return the frequency alone that `fit_harmonics` finds, which is quicker.
+
+    One step is enough to tell to two digits by how much a frequency differs from the first guess.
+    """
     weights = hann(len(time), taper)
     clock, span = _clock(time)
     start = frequency
-    for _ in range(NEWTON_STEPS):
-        step = _newton_step(clock, signals, weights, frequency, harmonics)
+    for _ in range(steps):
+        step = _Sums.of(clock, signals, weights, frequency, harmonics).newton_step()
         frequency += step
         if abs(frequency - start) * span > 1.0:
             return None
         if abs(step) * span <= NEWTON_TOLERANCE:
             break
     return frequency
+
+
+def misfit_at(time: Instants, signals: ComplexArray, frequency: float, *, harmonics: int) -> float:
+    """Return the misfit of a fit of harmonics of a frequency that is not refined."""
+    weights = hann(len(time))
+    sums = _Sums.of(_clock(time)[0], signals, weights, frequency, harmonics)
+    mean = np.sum(weights[:, None] * signals, axis=0)
+    size = _weighted_square(signals - mean, weights)
+    explained = np.sum((sums.coefficients.conj() * sums.plain).real) - np.sum(np.abs(mean) ** 2)
+    return float(np.sqrt(max(0.0, 1.0 - explained / size))) if size > 0.0 else 0.0
 
 
 def _clock(time: Instants) -> tuple[Instants, float]:
@@ -159,20 +176,52 @@ def _order(coefficients: ComplexArray) -> Array:
     return np.arange(len(coefficients), dtype=np.float64)[:, None] - len(coefficients) // 2
 
 
-def _newton_step(
-    clock: Instants,
-    signals: ComplexArray,
-    weights: Array,
-    frequency: float,
-    harmonics: int,
-) -> float:
-    onto = _Projection.of(_basis(clock, frequency, harmonics), weights)
-    coefficients, left = onto.fit(signals)
-    slope = _slope(clock, onto, coefficients)
-    steepness = _weighted_square(slope, weights)
-    if steepness == 0.0:
-        return 0.0
-    return float(np.sum(weights[:, None] * (slope.conj() * left).real)) / steepness
+@dataclass(frozen=True)
+class _Sums:
+    """All that a step of Gauss and Newton takes of the samples.
+
+    Weighted sums of the harmonics with one another, shape ``(3, 2 K + 1, 2 K + 1)``, plain, times t
+    and times t^2; and with the signals, plain and times t, each ``(2 K + 1, channels)``.
+    """
+
+    gram: ComplexArray
+    plain: ComplexArray
+    timed: ComplexArray
+
+    @classmethod
+    def of(
+        cls,
+        clock: Instants,
+        signals: ComplexArray,
+        weights: Array,
+        frequency: float,
+        harmonics: int,
+    ) -> _Sums:
+        top, channels = 2 * harmonics + 1, signals.shape[1]
+        even = np.empty((3, top), dtype=np.complex128)
+        mixed = np.empty((2, channels, top), dtype=np.complex128)
+        signals = np.ascontiguousarray(signals, dtype=np.complex128)
+        harmonic_sums(clock, signals, weights, frequency, even, mixed)
+        row = np.concatenate([even[:, :0:-1].conj(), even], axis=1)
+        order = np.arange(top)
+        gram = row[:, top - 1 + order[None, :] - order[:, None]]
+        return cls(gram, mixed[0].T, mixed[1].T)
+
+    @cached_property
+    def coefficients(self) -> ComplexArray:
+        """The fit."""
+        return np.linalg.solve(self.gram[0], self.plain).astype(np.complex128)
+
+    def newton_step(self) -> float:
+        """Return the change of the frequency."""
+        moved = 2j * np.pi * _order(self.coefficients) * self.coefficients
+        seen = self.gram[1] @ moved
+        # What a change of the coefficients could undo does not count.
+        undone = np.sum((seen.conj() * np.linalg.solve(self.gram[0], seen)).real)
+        steepness = float(np.sum((moved.conj() * (self.gram[2] @ moved)).real) - undone)
+        left = self.timed - self.gram[1] @ self.coefficients
+        pull = float(np.sum((moved.conj() * left).real))
+        return pull / steepness if steepness > 0.0 else 0.0
 
 
 def _weighted_square(values: ComplexArray, weights: Array) -> float:

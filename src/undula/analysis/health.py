@@ -1,13 +1,15 @@
 """How well a run was computed: the figures that every result carries."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from undula.analysis.motion import Motion
+from undula.analysis.shape_sums import link_squares
 from undula.analysis.simulation import Simulation
-from undula.arrays import Array, Instants, Shapes
+from undula.arrays import Array, Instants
 from undula.models.joint import FOLDED
 from undula.numerics import memory as names
 from undula.numerics.system import RATES
@@ -66,12 +68,18 @@ def health_of(simulation: Simulation, motion: Motion) -> Health:
     """Return the health of a simulation whose samples are `motion`."""
     real, count = simulation.memory.real, simulation.memory.count
     steps = int(count[names.STEPS])
-    angles = np.abs(simulation.model.joint_angles(simulation.states[:, :-RATES]))
+    extremes = link_squares(motion.nodes)
+    angle = 2.0 * math.atan(math.sqrt(extremes[2]))
+    folds = False
+    if simulation.model.winds or angle > 0.5 * np.pi:
+        angles = np.abs(simulation.model.joint_angles(simulation.states[:, :-RATES]))
+        angle = float(angles.max())
+        folds = not simulation.model.winds and folded(motion, angles)
     return Health(
         power_balance_error=power_balance_error(motion),
-        length_error=length_error(motion.nodes),
-        largest_joint_angle=float(angles.max()),
-        folded=not simulation.model.winds and folded(motion, angles),
+        length_error=_length_error(extremes, motion.nodes.shape[1] - 1),
+        largest_joint_angle=angle,
+        folded=folds,
         smallest_step=float(real[names.SMALLEST_STEP]) if steps else 0.0,
         largest_step=float(real[names.LARGEST_STEP]),
         steps=steps,
@@ -93,12 +101,9 @@ def power_balance_error(motion: Motion) -> float:
     return float(np.abs(imbalance).max()) / throughput if throughput > ROUND_OFF else 0.0
 
 
-def length_error(nodes: Shapes) -> float:
+def _length_error(extremes: tuple[float, ...], links: int) -> float:
     """Return the largest relative deviation of a link's length from 1/N."""
-    links = np.diff(nodes, axis=1)
-    square = np.einsum("kna,kna->kn", links, links)
-    extremes = np.sqrt([square.min(), square.max()])
-    return float(np.abs(extremes * links.shape[1] - 1.0).max())
+    return max(abs(math.sqrt(square) * links - 1.0) for square in extremes[:2])
 
 
 def folded(motion: Motion, angles: Array) -> bool:
@@ -108,8 +113,6 @@ def folded(motion: Motion, angles: Array) -> bool:
     way, as seen from the inner link. In a plane that is the way over pi where the angles to either
     side add up to more than half a turn.
     """
-    if angles.max() <= 0.5 * np.pi:
-        return False  # as of most motions
     if (angles > np.pi - FOLDED).any():
         return True
     sample, joint = np.nonzero(angles[:-1] + angles[1:] > np.pi)

@@ -3,19 +3,22 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from undula.analysis.close_up import CloseUp
 from undula.analysis.finite_separation import FOLDS, Separation, finite_separation
 from undula.analysis.lyapunov import Lyapunov, lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.regimes import (
     SIGNIFICANT,
+    STRAIGHT,
     UNDECIDED,
     Verdict,
+    coarse_verdict,
     first_verdict,
     with_exponents,
 )
 from undula.analysis.schedule import Schedule
 from undula.analysis.settling import Settled
-from undula.arrays import Array
+from undula.arrays import Array, Instants, Shapes
 from undula.errors import InputError
 from undula.models.model import Model
 
@@ -62,7 +65,7 @@ class Judged:
 def judge(
     model: Model,
     schedule: Schedule,
-    motions: tuple[Motion, Motion | None],
+    motions: tuple[Motion, CloseUp | None],
     last: Array,
     settled: Settled | None,
     exponents: Exponents,
@@ -82,10 +85,8 @@ def judge(
     exponents
         When to compute Lyapunov exponents.
     """
-    whole, close = motions
-    since = settled.since if settled else None
-    motion = close or whole
-    judged = Judged(_verdict(model, motion, since), motion)
+    judged = _first(model, *motions, settled)
+    motion = judged.motion
     asked = exponents is Exponents.ALWAYS
     if not asked and (judged.verdict.late is None or exponents is Exponents.NEVER):
         return judged
@@ -95,22 +96,31 @@ def judge(
         return Judged(judged.verdict, motion, without=str(error))
 
 
-def _verdict(model: Model, motion: Motion, since: float | None) -> Verdict:
-    return first_verdict(
-        motion.time,
-        motion.nodes,
-        motion.energetics.bending_energy,
-        motion.rotation_angle,
-        settled_from=since,
-        axisymmetric=model.axisymmetric,
-    )
+def _first(model: Model, whole: Motion, close: CloseUp | None, settled: Settled | None) -> Judged:
+    """Judge a run without exponents, by its close-up only where the samples of the whole fail."""
+    if close is not None:
+        steady = None
+        if settled and settled.kind == "steady":
+            steady = max(settled.since, float(close.time[0]))
+        told = coarse_verdict(*_signals(whole), steady_from=steady, axisymmetric=model.axisymmetric)
+        if told is not None:
+            return Judged(told, whole)
+    motion = close.motion if close else whole
+    since = settled.since if settled else None
+    found = first_verdict(*_signals(motion), settled_from=since, axisymmetric=model.axisymmetric)
+    return Judged(found, motion)
+
+
+def _signals(motion: Motion) -> tuple[Instants, Shapes, Instants, Instants]:
+    energy = motion.energetics.bending_energy
+    return motion.time, motion.nodes, energy, motion.rotation_angle
 
 
 def _with_exponents(
     model: Model, schedule: Schedule, judged: Judged, last: Array, *, parting: bool
 ) -> Judged:
     """Follow the motion on from its last state, for longer if the first exponents do not tell."""
-    if judged.verdict.name == "straight":
+    if judged.verdict.name == STRAIGHT:
         raise InputError(
             "a motion that ends straight has the eigenvalues of the straight state for exponents:"
             " ask undula stability"

@@ -32,7 +32,7 @@ def last_period(run: Run) -> tuple[Instants, Shapes]:
         spectrum, of a straight one the whole late window.
     """
     nearest = _samples(run, 1, SHAPES)
-    return run.window.time[nearest], run.window.nodes[nearest]
+    return run.shown.time[nearest], run.shown.nodes[nearest]
 
 
 def last_path(run: Run) -> Array:
@@ -40,12 +40,12 @@ def last_path(run: Run) -> Array:
 
     Where the run shows fewer than `PERIODS` of them, over those that it shows.
     """
-    return mean_position(run.window.nodes[_samples(run, PERIODS, INSTANTS)])
+    return mean_position(run.shown.nodes[_samples(run, PERIODS, INSTANTS)])
 
 
 def _samples(run: Run, periods: int, count: int) -> Array:
     """Return the indices (count,) of samples about evenly over the last periods of the window."""
-    late = run.window
+    late = run.shown
     length = float(late.time[-1] - late.time[0])
     period = length if run.verdict.name == "straight" else min(length, periods * _period(run, late))
     wanted = late.time[-1] - period * np.arange(count - 1, -1, -1) / count

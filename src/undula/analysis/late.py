@@ -12,8 +12,8 @@ from undula.analysis.observables import arc_weights, displacement, transverse
 from undula.analysis.planes import planarity
 from undula.analysis.returns import Recurrence, recurrence
 from undula.analysis.spectral import hann
-from undula.analysis.turning import Winding, sense_of_rotation, winding
-from undula.arrays import Array, Instants, Shapes
+from undula.analysis.turning import Winding, lowest_direction, sense_of_rotation, winding
+from undula.arrays import Array, Indices, Instants, Shapes
 
 # Share out of the plane below which a motion is planar: a trace of the start that still decays.
 PLANAR_TOLERANCE = 0.02
@@ -22,6 +22,8 @@ GOES_ROUND = 0.5
 # Fewer maxima than this do not show that a motion is irregular: with up to ten a period it would
 # have come back four times.
 MANY_MAXIMA = 40
+# A windmilling link points backwards at times: its direction has this z component or less.
+BACKWARDS = -0.7
 # A criterion met by less than this factor does not decide between two names.
 THIN = 1.05
 
@@ -50,7 +52,7 @@ class Late:
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
     seen
-        What every window is measured for.
+        What windows are measured for before anything comes back.
     axisymmetric
         Whether motions that differ by a turn are the same, as no direction across z is singled out.
     """
@@ -71,9 +73,14 @@ class Late:
         return sense_of_rotation(self.nodes)
 
     @cached_property
+    def backwards(self) -> Indices:
+        """Indices of the links that point backwards at times."""
+        return np.flatnonzero(lowest_direction(self.nodes) <= BACKWARDS)
+
+    @cached_property
     def winding(self) -> Winding:
-        """Turning of the links about axes across z."""
-        return winding(self.nodes)
+        """Turning of these links about axes across z."""
+        return winding(self.nodes, self.backwards)
 
     @property
     def plane_turn(self) -> float:

@@ -18,15 +18,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from undula.analysis.evidence import GROWTH_FACTOR, STEADY_SHAPE
+from undula.analysis.evidence import GROWTH_FACTOR, MIN_TURNS, STEADY_SHAPE
 from undula.analysis.late import GOES_ROUND, PLANAR_TOLERANCE, Late, Name, below
 from undula.analysis.naming_held import ASIDE, held_name, rests
 from undula.analysis.returns import RECURRENT, STEADY_FACTOR
 from undula.analysis.trends import out_of_plane, shape_change, swing
 from undula.analysis.window import STATIONARY
 
-# A steady shape must be seen to come round once; in less it could grow or shrink unseen.
-MIN_TURNS = 1.0
 # Share out of the plane below which a beat in a turning plane still is one.
 PRECESSING_TOLERANCE = 0.2
 # What grows from less than this part of its tolerance is too small to be seen growing.
@@ -39,8 +37,6 @@ PRECESSES = RECURRENT
 # Coherence of the turning of a windmilling link: swings stay below 0.3, windmills above 0.7 (their
 # axis turns while they are watched).
 WINDMILLS = 0.6
-# A windmilling link points backwards at times: its direction has this z component or less.
-BACKWARDS = -0.7
 
 
 def steady(late: Late) -> Name | None:
@@ -51,7 +47,7 @@ def steady(late: Late) -> Name | None:
 def spins(late: Late) -> Name | None:
     """Return the name of a steady shape that is seen to turn."""
     seen = late.seen
-    if not seen.steady or abs(seen.turns) < MIN_TURNS:
+    if not seen.spins:
         return None
     change = shape_change(late.nodes)
     grows = change.grows(STEADY_FACTOR, VISIBLE * STEADY_SHAPE)
@@ -66,10 +62,10 @@ def spins(late: Late) -> Name | None:
 
 def windmills(late: Late) -> Name | None:
     """Return the name of a motion in which links turn about an axis across z."""
-    if late.nodes[..., 2].min() >= 0.0 and np.diff(late.nodes[..., 2], axis=1).min() >= 0.0:
-        return None  # no link ever points backwards: the whole measure can be saved
+    if not len(late.backwards):
+        return None  # so that the whole measure can be saved
     round_it = late.winding
-    turning = (round_it.coherence >= WINDMILLS) & (round_it.lowest <= BACKWARDS)
+    turning = round_it.coherence >= WINDMILLS
     if not turning.any():
         return None
     links = np.flatnonzero(turning) + 1
@@ -85,8 +81,9 @@ def windmills(late: Late) -> Name | None:
 def flaps(late: Late) -> Name | None:
     """Return the name of a motion in a plane with one frequency."""
     seen = late.seen
-    repeats = seen.misfit <= PERIODIC_TOLERANCE and seen.drift <= STATIONARY
-    if not (repeats and seen.planarity <= PLANAR_TOLERANCE):
+    if seen.planarity > PLANAR_TOLERANCE or seen.drift > STATIONARY:
+        return None
+    if seen.misfit > PERIODIC_TOLERANCE:
         return None
     aside = not late.axisymmetric and late.bias > ASIDE
     return Name(

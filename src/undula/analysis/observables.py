@@ -9,14 +9,17 @@ end nodes half and so tends to the integral with the square of the link length.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from undula.analysis.shape_sums import distances_from, extremes
 from undula.arrays import Array, ComplexArray, Instants, Shapes
 
 
+@lru_cache(maxsize=64)
 def arc_weights(count: int) -> Array:
-    """Weights of a mean over the arc length, one for each node.
+    """Weights of a mean over the arc length, one for each node; they cannot be written to.
 
     Parameters
     ----------
@@ -30,7 +33,22 @@ def arc_weights(count: int) -> Array:
     """
     weights = np.full(count, 1.0 / (count - 1))
     weights[[0, -1]] *= 0.5
+    weights.setflags(write=False)
     return weights
+
+
+@lru_cache(maxsize=64)
+def _straight_places(count: int) -> Array:
+    """Return the places (count, 3) of the nodes of the straight filament."""
+    places = np.zeros((count, 3))
+    places[:, 2] = np.linspace(0.0, 1.0, count)
+    places.setflags(write=False)
+    return places
+
+
+def as_shapes(nodes: Array) -> Shapes:
+    """Return nodes (..., N + 1, 3) as compiled sums take them: a contiguous (m, N + 1, 3)."""
+    return np.ascontiguousarray(nodes, dtype=np.float64).reshape(-1, *nodes.shape[-2:])
 
 
 def transverse(nodes: Array) -> ComplexArray:
@@ -96,10 +114,10 @@ def displacement(nodes: Array) -> Array:
     Array
         Shape ``(...)``; 0 for the straight filament.
     """
-    away = np.array(nodes, dtype=np.float64)
-    away[..., 2] -= np.linspace(0.0, 1.0, nodes.shape[-2])
-    square = np.einsum("k,...kc,...kc->...", arc_weights(nodes.shape[-2]), away, away)
-    return np.asarray(np.sqrt(square), dtype=np.float64)
+    shapes, count = as_shapes(nodes), nodes.shape[-2]
+    found = np.empty(len(shapes))
+    distances_from(shapes, _straight_places(count), arc_weights(count), found)
+    return found.reshape(nodes.shape[:-2])
 
 
 def winding_angle(nodes: Shapes) -> Instants:
@@ -151,12 +169,5 @@ def envelope(values: Instants) -> Range:
     Range
         With the plain mean of the samples.
     """
-    return Range(min=-_largest(-values), max=_largest(values), mean=float(np.mean(values)))
-
-
-def _largest(values: Instants) -> float:
-    before, here, after = values[:-2], values[1:-1], values[2:]
-    bend = 2.0 * here - before - after
-    top = (here >= before) & (here >= after) & (bend > 0.0)
-    vertices = here[top] + (after[top] - before[top]) ** 2 / (8.0 * bend[top])
-    return float(max(np.max(values), np.max(vertices, initial=-np.inf)))
+    least, largest = extremes(np.ascontiguousarray(values, dtype=np.float64))
+    return Range(min=least, max=largest, mean=float(np.mean(values)))

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from undula.analysis.observables import arc_weights, transverse
+from undula.analysis.observables import arc_weights, as_shapes, transverse
+from undula.analysis.shape_sums import second_moments, squares_in_plane
 from undula.arrays import Array, Shapes
 
 
@@ -25,8 +28,8 @@ def plane_angle(nodes: Shapes) -> float:
     float
         The angle from the x axis.
     """
-    sides = transverse(nodes)
-    return float(0.5 * np.angle(np.sum(arc_weights(nodes.shape[-2]) * sides**2)))
+    difference, product = second_moments(as_shapes(nodes), arc_weights(nodes.shape[-2]))
+    return 0.5 * math.atan2(product, difference)
 
 
 def in_plane(nodes: Array, angle: float) -> tuple[Array, Array]:
@@ -65,8 +68,7 @@ def planarity(nodes: Shapes) -> float:
     float
         Between 0 and 1/sqrt(2); 0 for a filament that never leaves the axis.
     """
-    weights = arc_weights(nodes.shape[-2])
-    along, across = in_plane(nodes, plane_angle(nodes))
-    out = float(np.sum(weights * across**2))
-    total = out + float(np.sum(weights * along**2))
-    return float(np.sqrt(out / total)) if total > 0.0 else 0.0
+    shapes, weights = as_shapes(nodes), arc_weights(nodes.shape[-2])
+    along, across = squares_in_plane(shapes, weights, plane_angle(shapes))
+    total = along + across
+    return math.sqrt(across / total) if total > 0.0 else 0.0

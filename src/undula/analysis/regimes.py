@@ -15,7 +15,7 @@ import numpy as np
 
 from undula.analysis.alignment import comparison
 from undula.analysis.decay import LinearMotion
-from undula.analysis.evidence import measure
+from undula.analysis.evidence import Evidence
 from undula.analysis.late import THIN, Late, Name
 from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.missing import MIN_SAMPLES_PER_PERIOD, missing
@@ -26,13 +26,15 @@ from undula.analysis.straightening import DECAY_FACTOR, Straightening, straighte
 from undula.analysis.window import late_windows
 from undula.arrays import Instants, Shapes
 
-UNDECIDED = "undecided"
+STRAIGHT, UNDECIDED = "straight", "undecided"
 # A filament that stays this near to straight [L] has not moved: round-off alone gets it so far.
 UNMOVED = 1e-12
 # No criterion counts as met by more than this factor.
 MOST = 100.0
 # Without this many samples nothing can be said about a motion.
 MIN_SAMPLES = 8
+# Half of so many show that a steady shape stays so, and how fast it turns.
+MIN_STEADY_SAMPLES = 32
 # A Lyapunov exponent above so many of its errors is positive.
 SIGNIFICANT = 3.0
 # Neighbouring motions that part by less than the exponential of this from one maximum of the
@@ -80,8 +82,11 @@ def first_verdict(
     *,
     settled_from: float | None,
     axisymmetric: bool = True,
+    fall: Straightening | None = None,
 ) -> Verdict:
     """Judge a run by its whole shape over a late window.
+
+    Samples have to be dense enough to follow the motion.
 
     Parameters
     ----------
@@ -98,26 +103,26 @@ def first_verdict(
         was not asked: the window is then the longest late part that is stationary.
     axisymmetric
         Whether motions of the body that differ by a turn about z are the same.
+    fall
+        How the displacement falls, if that is known already and no return to straight.
 
     Returns
     -------
     Verdict
         For any finite data, however short or odd.
     """
-    fall = _fall(time, nodes)
-    if isinstance(fall, Verdict):
-        return fall
+    looked = fall or _fall(time, nodes)
+    if isinstance(looked, Verdict):
+        return looked
     undecided: Verdict | None = None
     compare = comparison(axisymmetric=axisymmetric)
     for start in _windows(time, nodes, bending_energy, settled_from):
         part = slice(start, None)
-        late = Late(
-            time[part],
-            nodes[part],
-            measure(time[part], nodes[part], bending_energy[part], rotation_angle[part], compare),
-            axisymmetric,
+        seen = Evidence(
+            time[part], nodes[part], bending_energy[part], rotation_angle[part], compare
         )
-        verdict = _verdict(late, fall)
+        late = Late(time[part], nodes[part], seen, axisymmetric)
+        verdict = _verdict(late, looked)
         if verdict.name != UNDECIDED:
             return verdict
         undecided = undecided or verdict
@@ -128,10 +133,50 @@ def first_verdict(
     return undecided or _too_few(time)
 
 
-def straight_verdict(time: Instants, nodes: Shapes) -> Verdict | None:
-    """Return the verdict of `first_verdict` if that is straight, and else None: this is quick."""
+def coarse_verdict(
+    time: Instants,
+    nodes: Shapes,
+    bending_energy: Instants,
+    rotation_angle: Instants,
+    *,
+    steady_from: float | None,
+    axisymmetric: bool = True,
+) -> Verdict | None:
+    """Judge a run that has few samples a period, if they tell: a straight one or a steady shape.
+
+    A decay is not seen better by its last part. Shapes compared up to turns and the integral of the
+    rate of turning have no periods to follow, where the integrator saw the shape hardly change.
+
+    Parameters
+    ----------
+    time, nodes, bending_energy, rotation_angle, axisymmetric
+        As of `first_verdict`.
+    steady_from
+        Time from which on the integrator saw a steady shape [T]; None if it did not.
+
+    Returns
+    -------
+    Verdict or None
+    """
     fall = _fall(time, nodes)
-    return fall if isinstance(fall, Verdict) and fall.name == "straight" else None
+    if isinstance(fall, Verdict):
+        return fall if fall.name == STRAIGHT else None
+    if steady_from is None:
+        return None
+    start = int(np.searchsorted(time, steady_from))
+    turns = abs(float(rotation_angle[-1] - rotation_angle[start])) / (2.0 * np.pi)
+    if len(time) - start < max(MIN_STEADY_SAMPLES, MIN_SAMPLES_PER_PERIOD * turns):
+        return None
+    found = first_verdict(
+        time,
+        nodes,
+        bending_energy,
+        rotation_angle,
+        settled_from=steady_from,
+        axisymmetric=axisymmetric,
+        fall=fall,
+    )
+    return found if found.name == "spinning" else None
 
 
 def with_exponents(verdict: Verdict, exponents: Lyapunov) -> Verdict:
@@ -168,11 +213,12 @@ def _named(verdict: Verdict, name: Name) -> Verdict:
 
 def _fall(time: Instants, nodes: Shapes) -> Straightening | Verdict:
     """Return how the displacement falls, or the verdict if no more has to be looked at."""
-    if not np.any(displacement(nodes) > UNMOVED):
-        return Verdict("straight", "the filament has not moved", {}, _first(time), margin=MOST)
+    away = displacement(nodes)
+    if not np.any(away > UNMOVED):
+        return Verdict(STRAIGHT, "the filament has not moved", {}, _first(time), margin=MOST)
     if len(time) < MIN_SAMPLES:
         return _too_few(time)
-    fall = straightening(time, nodes)
+    fall = straightening(time, nodes, away)
     return _straight(fall, float(time[fall.start])) if fall.complete else fall
 
 
@@ -200,7 +246,7 @@ def _straight(fall: Straightening, start: float) -> Verdict:
     margin = min(MOST, fall.factor / DECAY_FACTOR)
     if fall.motion is None:
         reason = f"the displacement fell {fall.factor:.3g}-fold, too fast for the samples to show"
-        return Verdict("straight", reason, evidence, start, margin=margin)
+        return Verdict(STRAIGHT, reason, evidence, start, margin=margin)
     motion = fall.motion
     evidence |= {
         "decay_rate": -motion.rate,
@@ -209,7 +255,7 @@ def _straight(fall: Straightening, start: float) -> Verdict:
         "zero_crossings": float(motion.crossings),
     }
     reason = f"{_manner(motion)}; the displacement fell {fall.factor:.3g}-fold from its peak"
-    return Verdict("straight", reason, evidence, start, margin=margin)
+    return Verdict(STRAIGHT, reason, evidence, start, margin=margin)
 
 
 def _manner(motion: LinearMotion) -> str:
@@ -224,8 +270,8 @@ def _verdict(late: Late, fall: Straightening) -> Verdict:
     """Name what a window shows, or say what is missing."""
     start = float(late.time[0])
     found = steady(late) or windmills(late) or flaps(late)
-    enough = _seen_enough(late, fall)
-    if found is None and enough:
+    enough = found is None and _seen_enough(late, fall)
+    if enough:
         found = returning(late)
     if found is not None and found.unrest:
         reason = f"{found.name} so far, but {found.unrest}: run longer"

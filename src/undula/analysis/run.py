@@ -5,12 +5,13 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, Self
 
-from undula.analysis.close_up import close_up
+from undula.analysis.close_up import CloseUp, close_up
 from undula.analysis.finite_separation import Separation
 from undula.analysis.frequency import (
     Frequency,
     rotation_frequency,
     shape_frequency,
+    shape_swings,
 )
 from undula.analysis.health import Health, health_of
 from undula.analysis.judging import Exponents, Judged, judge
@@ -18,7 +19,7 @@ from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
 from undula.analysis.planes import planarity
-from undula.analysis.regimes import Verdict
+from undula.analysis.regimes import STRAIGHT, Verdict
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Settled
 from undula.analysis.simulation import Simulation
@@ -39,7 +40,7 @@ class Run:
         Why it ended; `cause` says more where it failed.
     motion : Motion
         The whole run at the asked samples.
-    close_up : Motion or None
+    closer : CloseUp or None
         Its last periods at finer intervals; None where the samples are fine enough.
     settled : Settled or None
         How it repeats itself, if it was watched for that and does.
@@ -56,7 +57,7 @@ class Run:
     ending: Ending
     cause: str
     motion: Motion
-    close_up: Motion | None
+    closer: CloseUp | None
     settled: Settled | None
     health: Health
     checkpoint: Mapping[str, Array]
@@ -72,7 +73,7 @@ class Run:
             ending=simulation.ending,
             cause=simulation.cause,
             motion=motion,
-            close_up=close_up(simulation, motion),
+            closer=close_up(simulation),
             settled=simulation.settled,
             health=health_of(simulation, motion),
             checkpoint=simulation.checkpoint(),
@@ -84,7 +85,7 @@ class Run:
         return judge(
             self.model,
             self.schedule,
-            (self.motion, self.close_up),
+            (self.motion, self.closer),
             self.checkpoint["states"][-1, :-RATES],
             self.settled,
             self.exponents,
@@ -94,6 +95,15 @@ class Run:
     def verdict(self) -> Verdict:
         """What the run ends in."""
         return self._judged.verdict
+
+    @property
+    def close_up(self) -> Motion | None:
+        """Its last periods at finer intervals, to be drawn, computed when somebody asks.
+
+        None where the samples are fine enough, or where they show that it returns to straight.
+        """
+        straight = self.verdict.name == STRAIGHT and self._judged.motion is self.motion
+        return None if self.closer is None or straight else self.closer.motion
 
     @property
     def lyapunov(self) -> Lyapunov | None:
@@ -111,29 +121,56 @@ class Run:
         return self._judged.motion.late(self.verdict.window_start)
 
     @cached_property
+    def shown(self) -> Motion:
+        """The same part at intervals that are fine enough to follow single periods."""
+        return (self.close_up or self.motion).late(self.verdict.window_start)
+
+    @cached_property
     def frequency(self) -> Frequency | None:
         """Frequency of the whole motion seen from the lab [cycles/T]; None for a straight one."""
         found = self.verdict.evidence
         # The verdict has looked for it in the same window.
-        if "frequency" not in found:
+        if "frequency" not in found or self.verdict.name == STRAIGHT:
             return None
-        return self._unless_straight(Frequency(found["frequency"], found["frequency_error"]))
+        return Frequency(found["frequency"], found["frequency_error"])
 
     @cached_property
     def rotation_frequency(self) -> Frequency | None:
         """Frequency of turning about the axis, positive from x to y [cycles/T]."""
+        if self.verdict.name == "spinning":
+            return self.frequency  # which is the same
+        if self.verdict.name == STRAIGHT:
+            return None
         late = self.window
-        return self._unless_straight(rotation_frequency(late.time, late.rotation_angle))
+        return rotation_frequency(late.time, late.rotation_angle)
 
     @cached_property
     def shape_frequency(self) -> Frequency | None:
         """How often the shape repeats up to rotation and reflection [cycles/T]."""
+        if self.verdict.name == STRAIGHT:
+            return None
         late = self.window
-        energy = late.energetics.bending_energy
-        return self._unless_straight(shape_frequency(late.time, late.nodes, energy))
+        if not shape_swings(late.nodes, late.energetics.bending_energy):
+            return None
+        late = self.shown
+        return shape_frequency(late.time, late.nodes, late.energetics.bending_energy)
 
-    def _unless_straight(self, frequency: Frequency | None) -> Frequency | None:
-        return None if self.verdict.name == "straight" else frequency
+    def figures(self) -> dict[str, Any]:
+        """Return what was measured on the window, in plain JSON types."""
+        late = self.window
+        shape = self.verdict.evidence.get("planarity")
+        return {
+            "frequency": _value(self.frequency, sign=False),
+            "frequency_error": _error(self.frequency),
+            "rotation_frequency": _value(self.rotation_frequency),
+            "rotation_frequency_error": _error(self.rotation_frequency),
+            "shape_frequency": _value(self.shape_frequency),
+            "shape_frequency_error": _error(self.shape_frequency),
+            "bending_energy": _range(envelope(late.energetics.bending_energy)),
+            "tip_radius": _range(envelope(tip_radius(late.nodes))),
+            "tip_height": _range(envelope(tip_height(late.nodes))),
+            "planarity": planarity(late.nodes) if shape is None else shape,
+        }
 
     def summary(self) -> dict[str, Any]:
         """Return the answer of the run in plain JSON types."""
@@ -153,16 +190,7 @@ class Run:
             "longer": self.verdict.longer,
             "lyapunov": _exponents(self.lyapunov, self.separation),
             "without_lyapunov": self._judged.without or None,
-            "frequency": _value(self.frequency, sign=False),
-            "frequency_error": _error(self.frequency),
-            "rotation_frequency": _value(self.rotation_frequency),
-            "rotation_frequency_error": _error(self.rotation_frequency),
-            "shape_frequency": _value(self.shape_frequency),
-            "shape_frequency_error": _error(self.shape_frequency),
-            "bending_energy": _range(envelope(late.energetics.bending_energy)),
-            "tip_radius": _range(envelope(tip_radius(late.nodes))),
-            "tip_height": _range(envelope(tip_height(late.nodes))),
-            "planarity": float(planarity(late.nodes)),
+            **self.figures(),
             "winding_angle": float(winding_angle(self.motion.nodes)[-1]),
             "time": float(self.motion.time[-1]),
             "window": [float(late.time[0]), float(late.time[-1])],

@@ -16,8 +16,8 @@ more slowly than that cannot be told from a settled one by any run; its spectrum
 import math
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, field
-from itertools import islice, pairwise
+from dataclasses import dataclass, field
+from itertools import islice
 from typing import Literal
 
 import numpy as np
@@ -132,7 +132,7 @@ class Watch:
         """Return all that was taken down, as arrays."""
         return {
             "seen": np.array(float(self.seen)),
-            "paces": np.array([astuple(pace) for pace in self.paces]).reshape(-1, 4),
+            "paces": np.array([tuple(vars(pace).values()) for pace in self.paces]).reshape(-1, 4),
             "return_times": np.array([time for time, _ in self.returns]),
             "return_nodes": np.array([nodes for _, nodes in self.returns]),
         }
@@ -178,8 +178,9 @@ class Watch:
             if apart[lag - 1] > TOLERANCE_IN_RTOL * self.rtol:
                 continue  # so that nearly all lags cost nothing
             returns = [self.returns[-k * lag - 1] for k in range(REPETITIONS + 1)][::-1]
-            changes = [self._change(earlier, later) for earlier, later in pairwise(returns)]
-            directed = self._change(returns[0], returns[-1]) > DIRECTED * sum(changes)
+            shapes = np.array([nodes for _, nodes in returns])
+            changes = self._changes(shapes[:-1], shapes[1:]).tolist()
+            directed = self._changes(shapes[0], shapes[-1]) > DIRECTED * sum(changes)
             remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol, directed=directed)
             if remaining is not None:
                 times = [time for time, _ in returns]
@@ -190,17 +191,33 @@ class Watch:
                 return Settled("periodic", times[0], remaining, period, last.turn)
         return None
 
+    def periods(self, duration: float) -> tuple[float | None, float]:
+        """Return the shortest and the longest period at work, of those within a duration [T]."""
+        candidates = [self.paces[-1].turn] if self.paces else []
+        if len(self.returns) > 2:
+            first, last = self.returns[0][0], self.returns[-1][0]
+            # Two maxima of the energy a beat.
+            candidates.append(2.0 * (last - first) / (len(self.returns) - 1))
+        periods = [period for period in candidates if period and period <= duration]
+        return (min(periods), max(periods)) if periods else (None, duration)
+
+    def turns_steadily(self) -> bool:
+        """Tell whether the shape hardly changes in a turn at the pace of the last look."""
+        last = self.paces[-1] if self.paces else None
+        if last is None or last.turn is None:
+            return False
+        return last.shape_speed * last.turn < LEAST_SWING * last.displacement
+
     def returned(self) -> Array:
         """Return how far the newest shape is from those at the maxima before, relative to it."""
         before = [nodes for _, nodes in islice(reversed(self.returns), 1, MOST_MAXIMA + 1)]
         if not before:
             return np.zeros(0)
-        newest = self.returns[-1][1]
-        return np.asarray(self.compare(np.array(before), newest).distance / displacement(newest))
+        return self._changes(np.array(before), self.returns[-1][1])
 
-    def _change(self, earlier: tuple[float, Nodes], later: tuple[float, Nodes]) -> float:
-        """Return by how much the shape changes between two returns, relative to its size."""
-        return float(self.compare(earlier[1], later[1]).distance / displacement(later[1]))
+    def _changes(self, earlier: Array, later: Array) -> Array:
+        """Return by how much shapes change from one return to another, relative to their size."""
+        return np.asarray(self.compare(earlier, later).distance / displacement(later))
 
     def _resting(self) -> Settled | None:
         """Judge a shape that stops: its speed over the rate at which that falls is to come."""

@@ -15,6 +15,7 @@ from typing import Any, Self
 import numpy as np
 
 from undula.analysis.alignment import comparison
+from undula.analysis.recent import Recent, parts_of
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Pace, Settled, Watch
 from undula.arrays import Array, State
@@ -29,6 +30,8 @@ from undula.numerics.system import RATES
 
 #: Steps and samples between two looks at the run: some milliseconds.
 MOST_STEPS, MOST_SAMPLES = 500, 256
+#: A run with this many samples a period needs no close-up.
+ENOUGH_A_PERIOD = 24.0
 #: Looks whose memory is kept, so that the last periods can be sampled again more finely.
 KEPT_MARKS = 400
 
@@ -48,6 +51,8 @@ class Simulation:
     rows : list of ndarray
         Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals
         of the turning rate, of the active power and of the dissipation.
+    recent : Recent
+        Samples at finer intervals, of the end so far.
     shown_until : float
         A motion that has settled is shown until then, or until it has been seen often enough [T].
     """
@@ -61,6 +66,7 @@ class Simulation:
     settled: Settled | None = None
     shown_until: float = 0.0
     cause: str = ""
+    recent: Recent = field(default_factory=Recent)
     marks: deque[Memory] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
 
     def __post_init__(self) -> None:
@@ -119,25 +125,52 @@ class Simulation:
             self.ending = self._last_ending()
             return False
         width = self.memory.differences.shape[1]
-        states, sections = np.empty((ahead.size, width)), np.empty((MOST_STEPS, 1 + width))
+        noted = self._parts()
+        parts = max(1, noted)
+        fine = np.arange(self._first(parts), ahead[-1] * parts + 1)
+        states, sections = np.empty((fine.size, width)), np.empty((MOST_STEPS, 1 + width))
         code, filled, found = advance(
             self.model.system,
             self.memory,
             self._options,
-            self.interval * ahead,
+            self.interval / parts * fine,
             states,
             sections,
             MOST_STEPS,
         )
-        self.rows.append(states[:filled])
+        # A look may end long before all times are reached: what is kept is not to hold the rest.
+        states = states if filled == fine.size else states[:filled].copy()
+        self.rows.append(states if parts == 1 else states[-fine[0] % parts :: parts].copy())
+        if noted:
+            self.recent.note(self.interval / parts, int(fine[0]), states)
         status = Status(code)
         if status not in (Status.DONE, Status.PAUSED):
             self.ending, self.cause = Ending.FAILED, status.advice
             return False
         self.marks.append(_copied(self.memory))
-        returns = [(float(row[0]), self._nodes(row[1:])) for row in sections[:found]]
-        self.watch.note(self._pace(), returns)
+        shapes = self._nodes(sections[:found, 1:]) if found else ()
+        self.watch.note(self._pace(), list(zip(sections[:found, 0].tolist(), shapes, strict=True)))
         return self.schedule.until != "settled" or self._goes_on()
+
+    def _parts(self) -> int:
+        """Return in how many parts an interval is sampled for the close-up; 0 if for none."""
+        fast, _ = self.watch.periods(self.time)
+        if self.schedule.until != "settled" or fast is None or self.watch.turns_steadily():
+            return 0
+        return parts_of(self.interval, fast, self.recent.interval)
+
+    def _first(self, parts: int) -> int:
+        """Return which multiple of a part of the interval is sampled next."""
+        following = max(0, self.sampled - 1) * parts + min(1, self.sampled)
+        if parts == 1:
+            return following
+        interval, real = self.interval / parts, self.memory.real
+        noted = self.recent.following(interval)
+        if noted is not None and noted >= following:
+            return noted
+        # Of what lies behind the last step nothing is known any more.
+        known = math.floor(float(real[names.TIME] - real[names.STEP]) / interval) + 1
+        return max(following, min(known, self.sampled * parts))
 
     def _last_ending(self) -> Ending:
         """Return the ending of a run whose time is over."""
@@ -168,40 +201,19 @@ class Simulation:
             turn_rate=float(real[names.TURN_RATE]),
         )
 
-    def _nodes(self, row: Array) -> Array:
-        return self.model.nodes(self.model.positions(row[:-RATES]))
+    def _nodes(self, rows: Array) -> Array:
+        return self.model.nodes(self.model.positions(rows[:, :-RATES]))
 
     @property
     def earliest_mark(self) -> float:
         """Time from which on the run can be sampled again [T]."""
         return float(self.marks[0].real[names.TIME])
 
-    def again(self, times: Array) -> Array:
-        """Sample the last part of the run once more, at other times.
-
-        Parameters
-        ----------
-        times : ndarray, shape (m,)
-            Increasing times between the earliest mark and the end of the run [T].
-
-        Returns
-        -------
-        ndarray, shape (m, n + RATES)
-            The very trajectory of the run, at these times.
-        """
-        earlier = [mark for mark in self.marks if mark.real[names.TIME] <= times[0]]
-        memory = _copied(earlier[-1])
-        states = np.empty((times.size, memory.differences.shape[1]))
-        advance(
-            self.model.system,
-            memory,
-            self._options,
-            times,
-            states,
-            np.empty((0, 1 + states.shape[1])),
-            np.iinfo(np.int64).max,
-        )
-        return states
+    def mark_before(self, time: float) -> Memory:
+        """Return the last mark at or before a time, from the earliest mark to the end [T]."""
+        earlier = (mark for mark in reversed(self.marks) if mark.real[names.TIME] <= time)
+        found: Memory = next(earlier)
+        return found
 
     def checkpoint(self) -> dict[str, Array]:
         """Return all that `resume` needs, as arrays."""
@@ -228,6 +240,37 @@ class Simulation:
         watched = ("seen", "paces", "return_times", "return_nodes")
         simulation.watch.note_arrays({name: saved[f"watch_{name}"] for name in watched})
         return simulation
+
+
+def sampled_again(model: Model, schedule: Schedule, mark: Memory, times: Array) -> Array:
+    """Sample a part of a run once more, at other times.
+
+    Parameters
+    ----------
+    model, schedule
+        Those of the run.
+    mark : Memory
+        One of its marks.
+    times : ndarray, shape (m,)
+        Increasing times between the mark and the end of the run [T].
+
+    Returns
+    -------
+    ndarray, shape (m, n + RATES)
+        The very trajectory of the run, at these times.
+    """
+    memory = _copied(mark)
+    states = np.empty((times.size, memory.differences.shape[1]))
+    advance(
+        model.system,
+        memory,
+        schedule.options(model),
+        times,
+        states,
+        np.empty((0, 1 + states.shape[1])),
+        np.iinfo(np.int64).max,
+    )
+    return states
 
 
 def _copied(memory: Memory) -> Memory:

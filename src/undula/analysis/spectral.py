@@ -12,7 +12,7 @@ from undula.arrays import Array, ComplexArray, Instants
 PADDING = 4
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def hann(count: int, power: int = 1) -> Array:
     """Hann weight raised to a power at the middles of ``count`` equal cells, with sum 1.
 

@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from undula.analysis.decay import MIN_SAMPLES, LinearMotion, linear_motion
-from undula.analysis.observables import displacement
 from undula.arrays import Instants, Shapes
 
 # Below this share of its peak the motion is left out: there the integration error takes over.
@@ -77,10 +76,10 @@ class Straightening:
     def complete(self) -> bool:
         """Whether the run counts as returning to straight."""
         far = self.factor >= DECAY_FACTOR and self.late_factor >= LATE_FACTOR
-        return self.vanished or (self.falling and far)
+        return self.vanished or (far and self.falling)
 
 
-def straightening(time: Instants, nodes: Shapes) -> Straightening:
+def straightening(time: Instants, nodes: Shapes, away: Instants) -> Straightening:
     """Measure how a run falls back from its largest displacement.
 
     Parameters
@@ -89,13 +88,15 @@ def straightening(time: Instants, nodes: Shapes) -> Straightening:
         Equally spaced times [T], shape ``(m,)``.
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``, not all straight.
+    away
+        Their displacement from straight [L], shape ``(m,)``.
 
     Returns
     -------
     Straightening
     """
     # The largest displacement still to come: swings through straight do not count as arrival.
-    ahead = np.maximum.accumulate(displacement(nodes)[::-1])[::-1]
+    ahead = np.maximum.accumulate(away[::-1])[::-1]
     peak = int(np.flatnonzero(ahead == ahead[0])[-1])
     stop = int(np.count_nonzero(ahead > FLOOR * ahead[peak]))
     start = (peak + stop) // 2

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from undula.analysis.observables import transverse
-from undula.arrays import Array, Shapes
+from undula.analysis.observables import as_shapes, transverse
+from undula.analysis.shape_sums import lowest_links
+from undula.arrays import Array, Indices, Shapes
 
 #: Way of a link's direction over which its turning is added up, in full turns: a swing to and fro
 #: has cancelled by then, and the axis of a windmill has hardly moved.
@@ -35,13 +36,10 @@ class Winding:
         link that windmills, 0 for one that swings or spins.
     turns
         Full turns about transverse axes in the window, counted span by span.
-    lowest
-        Least z component of the link's direction.
     """
 
     coherence: Array
     turns: Array
-    lowest: Array
 
 
 def sense_of_rotation(nodes: Shapes) -> float:
@@ -61,7 +59,14 @@ def sense_of_rotation(nodes: Shapes) -> float:
     return float(np.sum((middle.conj() * moved).imag)) / way if way > 0.0 else 0.0
 
 
-def winding(nodes: Shapes) -> Winding:
+def lowest_direction(nodes: Shapes) -> Array:
+    """Return the least z component of the direction of each link, shape ``(N,)``."""
+    lowest = np.empty(nodes.shape[1] - 1)
+    lowest_links(as_shapes(nodes), lowest)
+    return lowest
+
+
+def winding(nodes: Shapes, chosen: Indices) -> Winding:
     """Measure how links turn about axes across z.
 
     Parameters
@@ -69,9 +74,11 @@ def winding(nodes: Shapes) -> Winding:
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``, samples in order of time, dense enough for a
         link to turn by less than half a turn in between.
+    chosen
+        Indices of the links that are measured; the others are said not to turn.
     """
     # An array for each coordinate, which is much faster than one for all three.
-    along = [np.diff(nodes[..., a], axis=1) for a in range(3)]
+    along = [nodes[:, chosen + 1, a] - nodes[:, chosen, a] for a in range(3)]
     length = np.sqrt(sum(part * part for part in along))
     x, y, z = (part / length for part in along)
     across = [a[:-1] * b[1:] - b[:-1] * a[1:] for a, b in ((y, z), (z, x), (x, y))]
@@ -79,13 +86,13 @@ def winding(nodes: Shapes) -> Winding:
     angle = np.arctan2(sine, sum(part[:-1] * part[1:] for part in (x, y, z)))
     factor = np.divide(angle, sine, out=np.ones_like(sine), where=sine > 0.0)
     turned = np.stack([factor * across[0], factor * across[1]], axis=2)
-    links = z.shape[1]
+    links = nodes.shape[1] - 1
     coherence, turns = np.zeros(links), np.zeros(links)
-    for i in range(links):
+    for i, link in enumerate(chosen):
         spans = _spans(angle[:, i], turned[:, i])
         if len(spans) >= FEWEST_SPANS and np.median(angle[:, i]) <= FOLLOWED:
-            coherence[i], turns[i] = np.median(spans), SPAN * np.sum(spans)
-    return Winding(coherence, turns, z.min(axis=0))
+            coherence[link], turns[link] = np.median(spans), SPAN * np.sum(spans)
+    return Winding(coherence, turns)
 
 
 def _spans(angle: Array, turned: Array) -> Array:

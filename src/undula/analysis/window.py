@@ -22,7 +22,7 @@ MIN_SAMPLES = 16
 STATIONARY = 0.02
 
 
-def drift(nodes: Shapes, bending_energy: Instants) -> float:
+def drift(away: Instants, nodes: Shapes, bending_energy: Instants) -> float:
     """How much the two halves of a window differ, relative to the whole.
 
     Compares Hann-weighted means of the squared displacement, the drop of the tip below its straight
@@ -30,8 +30,10 @@ def drift(nodes: Shapes, bending_energy: Instants) -> float:
 
     Parameters
     ----------
+    away
+        Displacement from straight [L], shape ``(m,)``, m at least 2.
     nodes
-        Node positions [L], shape ``(m, N + 1, 3)``, m at least 2.
+        Node positions [L], shape ``(m, N + 1, 3)``.
     bending_energy
         Energy [B/L], shape ``(m,)``.
 
@@ -40,7 +42,7 @@ def drift(nodes: Shapes, bending_energy: Instants) -> float:
     float
         The largest of the three relative differences; 0 when nothing moves.
     """
-    signals = (displacement(nodes) ** 2, 1.0 - tip_height(nodes), bending_energy)
+    signals = (away**2, 1.0 - tip_height(nodes), bending_energy)
     return max(_half_difference(signal) for signal in signals)
 
 
@@ -62,13 +64,13 @@ def late_windows(time: Instants, nodes: Shapes, bending_energy: Instants) -> Ite
         Index of the sample; after these, that of the last third of the run (or of the last 16
         samples, if that is longer), whatever it is like.
     """
-    count = len(time)
+    count, away = len(time), displacement(nodes)
     for share in SHARES:
         start = count - round(share * count)
         if count - start < MIN_SAMPLES:
             break
         late = slice(start, None)
-        if drift(nodes[late], bending_energy[late]) > STATIONARY:
+        if drift(away[late], nodes[late], bending_energy[late]) > STATIONARY:
             continue
         if _periods(time[late], nodes[late]) >= MIN_PERIODS:
             yield start

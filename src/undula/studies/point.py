@@ -29,11 +29,8 @@ from undula.studies.study_columns import LONGEST_TEXT
 
 #: Seconds that a piece of work should take: much longer than it is on its way.
 PIECE_SECONDS = 1.0
-#: The summary of a run holds these under the same names.
-_SAME = (
-    *("verdict", "reason", "margin", "frequency", "frequency_error", "rotation_frequency"),
-    *("shape_frequency", "planarity", "power_balance_error", "length_error", "time"),
-)
+#: The figures of a run hold these under the same names.
+_SAME = ("frequency", "frequency_error", "rotation_frequency", "shape_frequency", "planarity")
 _RANGES = {
     "energy": ("bending_energy", ("min", "max", "mean")),
     "tip_radius": ("tip_radius", ("min", "max")),
@@ -153,8 +150,11 @@ def _start(job: Mapping[str, Any], wanted: RunInput, model: Model) -> State:
 
 def _figures(run: Run) -> dict[str, Any]:
     """Return the figures of a run that every study keeps."""
-    told, found = run.summary(), run.lyapunov
-    record = {name: told[name] for name in _SAME}
+    told, found, verdict = run.figures(), run.lyapunov, run.verdict
+    record = {"verdict": verdict.name, "reason": verdict.reason, "margin": verdict.margin}
+    record |= {name: told[name] for name in _SAME}
+    record["power_balance_error"] = run.health.power_balance_error
+    record["length_error"] = run.health.length_error
     for name, (full, bounds) in _RANGES.items():
         record |= {f"{name}_{bound}": told[full][bound] for bound in bounds}
     if found is not None:
