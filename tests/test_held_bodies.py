@@ -16,6 +16,7 @@ from undula.analysis.alignment import aligned_distance, fixed_distance
 from undula.analysis.equilibrium import Equilibrium, find_equilibrium
 from undula.analysis.kinds import follow
 from undula.analysis.periodic_state import Periodic
+from undula.analysis.precession import precession
 from undula.analysis.regimes import Verdict, first_verdict
 from undula.analysis.states import NotFound
 from undula.app.cli import main
@@ -263,6 +264,47 @@ def test_shapes_are_compared_as_they_are_or_up_to_turns() -> None:
     assert aligned_distance(shape[0], shape[1]).distance < 1e-12
     apart = np.linalg.norm(shape[0] - shape[1], axis=-1)
     assert 0.3 * apart.max() < fixed_distance(shape[0], shape[1]).distance < apart.max()
+
+
+# ---------------------------------------------------------------- how they go round
+
+
+def test_a_beat_in_a_turning_plane_is_measured() -> None:
+    time = Clock(60.0, 40.0).time
+    found = precession(time, line(time, turned(ellipse(time, 0.1), 0.03 * time)).nodes)
+    assert found is not None
+    # The edges of the window cut a beat each.
+    assert found.plane_turns == pytest.approx(0.03, rel=0.02)
+    assert found.beats == pytest.approx(1.0, rel=0.02)
+    # The tip goes round once a beat on top of it.
+    assert found.tip_turns == pytest.approx(1.03, rel=0.02)
+
+
+def test_sides_of_the_plane_are_told() -> None:
+    time = Clock(40.0, 40.0).time
+    phase = 2.0 * np.pi * time[:, None]
+    to_and_fro = 0.3 * ARC**2 * np.cos(phase)
+    # Beyond its plane on one side at every maximum, or on the other side half a beat later.
+    same = precession(time, line(time, to_and_fro + 0.03j * ARC**2 * np.cos(2.0 * phase)).nodes)
+    assert same is not None
+    assert same.side_switching == 0.0
+    assert abs(same.plane_turns) < 1e-3
+    # Every second beat on the other side: + - - + at its maxima, two a beat.
+    slow = precession(
+        time, line(time, to_and_fro + 0.03j * ARC**2 * np.cos(0.5 * phase + 0.6)).nodes
+    )
+    assert slow is not None
+    assert slow.side_switching == pytest.approx(0.5, abs=0.05)
+
+
+def test_a_curved_run_tells_how_it_goes_round() -> None:
+    model = curved(100.0)
+    run = un.integrate(model, un.kicked(model, 0.1), until="settled", limit=3.0)
+    told = run.summary()["precession"]
+    assert abs(told["tip_turns"]) == pytest.approx(abs(run.frequency.value), rel=0.05)
+    round_one = curved(100.0, (0.0, 0.0))
+    spun = un.integrate(round_one, un.kicked(round_one, 0.1), until="settled", limit=3.0)
+    assert spun.summary()["precession"] is None
 
 
 # ---------------------------------------------------------------- the figure

@@ -10,6 +10,7 @@ import numpy as np
 from undula.analysis.evidence import Evidence
 from undula.analysis.observables import arc_weights, displacement, transverse
 from undula.analysis.planes import planarity
+from undula.analysis.precession import plane_angle
 from undula.analysis.returns import Recurrence, recurrence
 from undula.analysis.spectral import hann
 from undula.analysis.turning import Winding, lowest_direction, sense_of_rotation, winding
@@ -107,18 +108,8 @@ class Late:
 
     @cached_property
     def plane_turns(self) -> tuple[float, float]:
-        """Turns about z of the plane of the beat in each half of the window, with sign.
-
-        The direction in which the motion swings about its mean is that of the sum of w^2 over the
-        nodes, w = x + i y from the mean, which turns twice as fast, smoothed over a beat.
-        """
-        sides, weights = transverse(self.nodes), arc_weights(self.nodes.shape[1])
-        swing = sides - hann(len(sides)) @ sides
-        beat = 2 * len(sides) // max(1, self.back.maxima if self.back else 1)
-        smooth = np.convolve(swing**2 @ weights, hann(max(3, beat)), mode="valid")
-        if smooth.size < 3:
-            return 0.0, 0.0
-        angle = 0.5 * np.unwrap(np.angle(smooth)) / (2.0 * np.pi)
+        """Turns about z of the plane of the beat in each half of the window, with sign."""
+        angle = plane_angle(self.nodes, self.back.maxima if self.back else 1) / (2.0 * np.pi)
         middle = len(angle) // 2
         return float(angle[middle] - angle[0]), float(angle[-1] - angle[middle])
 

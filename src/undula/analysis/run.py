@@ -19,6 +19,7 @@ from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
 from undula.analysis.planes import planarity
+from undula.analysis.precession import Precession, precession
 from undula.analysis.regimes import STRAIGHT, Verdict
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Settled
@@ -155,6 +156,12 @@ class Run:
         late = self.shown
         return shape_frequency(late.time, late.nodes, late.energetics.bending_energy)
 
+    @cached_property
+    def precession(self) -> Precession | None:
+        """How the motion goes round the axis; None for a straight one, or one without maxima."""
+        late = self.shown
+        return None if self.verdict.name == STRAIGHT else precession(late.time, late.nodes)
+
     def figures(self) -> dict[str, Any]:
         """Return what was measured on the window, in plain JSON types."""
         late = self.window
@@ -192,12 +199,19 @@ class Run:
             "without_lyapunov": self._judged.without or None,
             **self.figures(),
             "winding_angle": float(winding_angle(self.motion.nodes)[-1]),
+            "precession": self._precession(),
             "time": float(self.motion.time[-1]),
             "window": [float(late.time[0]), float(late.time[-1])],
             "settled": asdict(self.settled) if self.settled else None,
             "settled_from": self.settled.since if self.settled else None,
             **asdict(self.health),
         }
+
+    def _precession(self) -> dict[str, float] | None:
+        """Return how a body that is held in one direction goes round, which others do evenly."""
+        if self.model.axisymmetric or self.precession is None:
+            return None
+        return asdict(self.precession)
 
     def __str__(self) -> str:
         """One line: what it ends in, at which frequency, and how well it was computed."""
