@@ -7,17 +7,15 @@ in the unknowns y = (x, z). Without natural curvature the straight filament is t
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Self
 
 import numpy as np
 
 from undula.analysis.branches import Family
-from undula.analysis.observables import Range, tip_height, tip_radius
 from undula.analysis.parameters import FORCE, changed, neighbours
 from undula.analysis.relative_equilibrium import rotating_spectrum
-from undula.analysis.states import NotFound
-from undula.arrays import Array, ComplexArray, Nodes
+from undula.analysis.states import FixedShape, NotFound
+from undula.arrays import Array, ComplexArray
 from undula.errors import InputError
 from undula.models.model import Model
 from undula.models.starts import from_state
@@ -34,7 +32,7 @@ _NEAR = 1e-3
 
 
 @dataclass(frozen=True)
-class Equilibrium:
+class Equilibrium(FixedShape):
     """A shape at rest.
 
     Attributes
@@ -57,59 +55,14 @@ class Equilibrium:
     error: float | None = None
 
     @property
-    def x(self) -> Array:
-        """The state of the model, shape (size,)."""
-        return self.model.positions(self.unknowns)
-
-    @property
-    def nodes(self) -> Nodes:
-        """Positions of the nodes (N + 1, 3) [L]."""
-        return self.model.nodes(self.x)
-
-    @property
-    def force(self) -> float:
-        """Total follower force [B/L^2]."""
-        return self.model.load.force
-
-    @property
     def frequency(self) -> float:
         """Cycles per T: none."""
         return 0.0
-
-    @cached_property
-    def bending_energy(self) -> float:
-        """Bending energy [B/L]."""
-        return float(self.model.observe(self.unknowns[None, :]).bending_energy[0])
-
-    @property
-    def energy(self) -> Range:
-        """Bending energy [B/L], which is constant."""
-        return Range(self.bending_energy, self.bending_energy, self.bending_energy)
-
-    @property
-    def tip_radius(self) -> float:
-        """Distance of the tip from the axis [L]."""
-        return float(tip_radius(self.nodes))
-
-    @property
-    def tip_height(self) -> float:
-        """Height of the tip above the clamp [L]."""
-        return float(tip_height(self.nodes))
 
     @property
     def power_balance_error(self) -> float:
         """Nothing moves: 0."""
         return 0.0
-
-    @property
-    def leading_rate(self) -> float:
-        """Largest growth rate of a disturbance [1/T]."""
-        return float(self.exponents[0].real)
-
-    @property
-    def stable(self) -> bool:
-        """Whether all disturbances decay."""
-        return self.leading_rate < 0.0
 
     def __str__(self) -> str:
         """Tell it in one line."""

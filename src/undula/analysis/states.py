@@ -37,8 +37,61 @@ class NotFound:
         return False
 
 
+class FixedShape:
+    """What is common to states whose shape does not change: it turns evenly, or rests."""
+
+    model: Model
+    unknowns: Array
+    exponents: ComplexArray
+
+    @property
+    def x(self) -> Array:
+        """The state of the model, shape (size,)."""
+        return self.model.positions(self.unknowns)
+
+    @property
+    def nodes(self) -> Nodes:
+        """Positions of the nodes (N + 1, 3) [L]."""
+        return self.model.nodes(self.x)
+
+    @property
+    def force(self) -> float:
+        """Total follower force [B/L^2]."""
+        return self.model.load.force
+
+    @cached_property
+    def bending_energy(self) -> float:
+        """Bending energy [B/L]."""
+        return float(self.model.observe(self.unknowns[None, :]).bending_energy[0])
+
+    @property
+    def energy(self) -> Range:
+        """Bending energy [B/L] over a cycle, which is constant."""
+        return Range(self.bending_energy, self.bending_energy, self.bending_energy)
+
+    @property
+    def tip_radius(self) -> float:
+        """Distance of the tip from the axis [L]."""
+        return float(tip_radius(self.nodes))
+
+    @property
+    def tip_height(self) -> float:
+        """Height of the tip above the clamp [L]."""
+        return float(tip_height(self.nodes))
+
+    @property
+    def leading_rate(self) -> float:
+        """Largest growth rate of a disturbance [1/T]."""
+        return float(self.exponents[0].real)
+
+    @property
+    def stable(self) -> bool:
+        """Whether all disturbances decay."""
+        return self.leading_rate < 0.0
+
+
 @dataclass(frozen=True)
-class Spinning:
+class Spinning(FixedShape):
     """A relative equilibrium: a fixed shape that turns about the axis at a constant rate.
 
     Attributes
@@ -68,60 +121,15 @@ class Spinning:
     error: float | None = None
 
     @property
-    def x(self) -> Array:
-        """The state of the model, shape (size,)."""
-        return self.model.positions(self.unknowns)
-
-    @property
-    def nodes(self) -> Nodes:
-        """Positions of the nodes (N + 1, 3) [L]."""
-        return self.model.nodes(self.x)
-
-    @property
-    def force(self) -> float:
-        """Total follower force [B/L^2]."""
-        return self.model.load.force
-
-    @property
     def frequency(self) -> float:
         """Turns per T."""
         return abs(self.rate) / (2.0 * np.pi)
-
-    @cached_property
-    def bending_energy(self) -> float:
-        """Bending energy [B/L]."""
-        return float(self.model.observe(self.unknowns[None, :]).bending_energy[0])
-
-    @property
-    def energy(self) -> Range:
-        """Bending energy [B/L] over a turn, which is constant."""
-        return Range(self.bending_energy, self.bending_energy, self.bending_energy)
-
-    @property
-    def tip_radius(self) -> float:
-        """Distance of the tip from the axis [L]."""
-        return float(tip_radius(self.nodes))
-
-    @property
-    def tip_height(self) -> float:
-        """Height of the tip above the clamp [L]."""
-        return float(tip_height(self.nodes))
 
     @cached_property
     def power_balance_error(self) -> float:
         """Difference of active power and dissipation, relative to either."""
         active, dissipated = self.model.power(self.x)
         return abs(active - dissipated) / abs(active)
-
-    @property
-    def leading_rate(self) -> float:
-        """Largest growth rate of a disturbance [1/T]."""
-        return float(self.exponents[0].real)
-
-    @property
-    def stable(self) -> bool:
-        """Whether all disturbances decay."""
-        return self.leading_rate < 0.0
 
     def __str__(self) -> str:
         """Tell it in one line."""
