@@ -20,6 +20,7 @@ from undula.app.options import (
     seconds_of,
 )
 from undula.app.questions import find, follow, stability, threshold
+from undula.app.reproduction import reproduce
 from undula.app.studying import status, sweep
 from undula.errors import InputError
 
@@ -80,7 +81,7 @@ def undula(
     """Elastic microfilaments in viscous fluid under follower forces: run, judge and draw them."""
 
 
-for _command in (stability, find, follow, threshold, sweep, status):
+for _command in (stability, find, follow, threshold, sweep, status, reproduce):
     app.command()(_command)
 
 

@@ -89,9 +89,14 @@ def save_figure(figure: Any, path: Path, *, overwrite: bool) -> None:
     InputError
         The file exists and is not to be replaced, or cannot be written.
     """
+    write_whole(path, figure_bytes(figure, path.suffix), overwrite=overwrite)
+
+
+def figure_bytes(figure: Any, ending: str) -> bytes:
+    """Return the content of a file of a matplotlib figure, by its ending, as ".png"."""
     image = BytesIO()
-    figure.savefig(image, format=path.suffix[1:].lower(), dpi=_DOTS_PER_INCH)
-    write_whole(path, image.getvalue(), overwrite=overwrite)
+    figure.savefig(image, format=ending[1:].lower(), dpi=_DOTS_PER_INCH)
+    return image.getvalue()
 
 
 def check_straight(parameter: str) -> None:

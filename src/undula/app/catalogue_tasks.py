@@ -1,0 +1,191 @@
+"""Tasks of the catalogue: what is left to do, done by workers, and kept for the next time."""
+
+import contextlib
+import hashlib
+import io
+import json
+import shlex
+import shutil
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from undula.app.answers import DONE
+from undula.compiled import package_digest
+from undula.errors import InputError
+from undula.studies.claims import Answer
+from undula.studies.items import INPUTS, Item, Task
+from undula.studies.whole_file import write_whole
+
+#: File in the folder of a task that holds its answer.
+_ANSWER = "answer.json"
+
+
+@dataclass(frozen=True)
+class Job:
+    """A task with its place on disk.
+
+    Attributes
+    ----------
+    item, name, task
+        Of the catalogue.
+    command
+        Its words behind `undula`, with folders filled in.
+    folder
+        Where its files and its answer are.
+    key
+        What its answer depends on: the command, its input files, and the sources of undula.
+    needs
+        Folders of the jobs that have to come before.
+    """
+
+    item: str
+    name: str
+    task: Task
+    command: tuple[str, ...]
+    folder: Path
+    key: str
+    needs: frozenset[Path]
+
+    @property
+    def told(self) -> str:
+        """The command as it is typed."""
+        return shlex.join(("undula", *self.command))
+
+    def kept(self) -> dict[str, Any] | None:
+        """Return the record of an earlier call, if it is one of this very job."""
+        try:
+            record = json.loads((self.folder / _ANSWER).read_text("utf-8"))
+        except (OSError, ValueError):
+            return None
+        return record if record.get("key") == self.key else None
+
+    def keep(self, record: Mapping[str, Any]) -> None:
+        """Store the record of its answer.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be written or is full.
+        """
+        content = json.dumps({"key": self.key, **record}, indent=1, allow_nan=False)
+        write_whole(self.folder / _ANSWER, content.encode(), overwrite=True)
+
+    def prepare(self) -> None:
+        """Make its folder, without the files of another version of the same task."""
+        mark = self.folder / "key"
+        if self.folder.exists() and (not mark.exists() or mark.read_text("utf-8") != self.key):
+            shutil.rmtree(self.folder)
+        write_whole(mark, self.key.encode(), overwrite=True)
+
+
+def jobs_of(items: Mapping[str, Item], data: Path, *, quick: bool) -> dict[str, Job]:
+    """Return the jobs of items by `item/task`, without those that a quick report leaves out."""
+    jobs = {}
+    for item_name, item in items.items():
+        wanted = {name: one for name, one in item.tasks.items() if one.command(quick=quick)}
+        folders = {
+            name: data
+            / item_name
+            / (name if one.command(quick=quick) == one.call else f"{name}-quick")
+            for name, one in wanted.items()
+        }
+        for name, task in wanted.items():
+            jobs[f"{item_name}/{name}"] = _job(item_name, name, task, folders, quick=quick)
+    return jobs
+
+
+def _job(item: str, name: str, task: Task, folders: Mapping[str, Path], *, quick: bool) -> Job:
+    template = task.command(quick=quick) or ""
+    needs = task.needs(quick=quick)
+    places = {needed: str(folders[needed]) for needed in needs}
+    places |= {"out": str(folders[name]), "inputs": _shown(INPUTS)}
+    command = tuple(word.format_map(places) for word in shlex.split(template))
+    inputs = [path for path in map(Path, command) if path.parent == Path(_shown(INPUTS))]
+    digest = hashlib.sha256(package_digest().encode())
+    for part in (template, *(path.read_text("utf-8") for path in inputs)):
+        digest.update(b"\0" + part.encode())
+    before = frozenset(folders[needed] for needed in needs)
+    return Job(item, name, task, command, folders[name], digest.hexdigest(), before)
+
+
+def _shown(path: Path) -> str:
+    """Return a path from the working folder, if it is below, so that commands can be typed."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
+
+
+def answers_of(item: Item, name: str, jobs: Mapping[str, Job]) -> dict[str, Answer]:
+    """Return the answers that are kept of the tasks of an item, by the names that it uses."""
+    places = {local: f"{name}/{local}" for local in item.tasks} | item.uses
+    answers = {}
+    for local, place in places.items():
+        job = jobs.get(place)
+        record = job.kept() if job else None
+        if job is not None and record is not None and record["status"] == DONE:
+            answers[local] = Answer(record["answer"], job.folder)
+    return answers
+
+
+def carry_out(command: tuple[str, ...], *, quietly: bool = True) -> dict[str, Any]:
+    """Run a command of `undula` in this process.
+
+    Parameters
+    ----------
+    command
+        Its words, without `undula`.
+    quietly
+        Whether its progress is kept from standard error.
+
+    Returns
+    -------
+    dict
+        `status`, the exit status; `answer`, its JSON; `said`, the last line on standard error;
+        `seconds`.
+    """
+    import dask
+
+    from undula.app.cli import main
+
+    began = time.monotonic()
+    answered, said = io.StringIO(), io.StringIO()
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(contextlib.redirect_stdout(answered))
+        # Inside of a worker xarray would ask the scheduler for a lock of each file that it writes.
+        stack.enter_context(dask.config.set(scheduler="synchronous"))
+        if quietly:
+            stack.enter_context(contextlib.redirect_stderr(said))
+        try:
+            status = main([*command, "--json"])
+        except Exception as error:
+            status = 1
+            said.write(f"{type(error).__name__}: {error}\n")
+    lines = said.getvalue().strip().splitlines()
+    try:
+        answer = json.loads(answered.getvalue())
+    except ValueError:
+        answer = {}
+    return {
+        "status": status,
+        "answer": answer,
+        "said": answer.get("error") or (lines[-1] if lines else ""),
+        "seconds": round(time.monotonic() - began, 3),
+    }
+
+
+def refuse_other_files(folder: Path) -> None:
+    """Refuse a folder that holds something else.
+
+    Raises
+    ------
+    InputError
+        It is no folder, or has files but no report.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file; give a folder for the report")
+    if folder.exists() and any(folder.iterdir()) and not (folder / "data").is_dir():
+        raise InputError(f"{folder} holds something else than a report; give another folder")

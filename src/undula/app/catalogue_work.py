@@ -1,0 +1,71 @@
+"""What is left to do of the catalogue: tasks handed out in order, and what has come back."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from undula.app.answers import DONE, notice
+from undula.app.catalogue_tasks import Job
+from undula.app.pool import DiedError
+
+
+class TaskWork:
+    """Jobs that wait for others, or for a worker; the longest go first.
+
+    Parameters
+    ----------
+    jobs
+        All that is to be done. What they need and is not among them is there already.
+    """
+
+    def __init__(self, jobs: Sequence[Job]) -> None:
+        self._waiting = sorted(jobs, key=lambda job: -job.task.cost)
+        self._undone = {job.folder: job for job in jobs}
+        self._lost: set[Path] = set()
+        self.total = len(jobs)
+
+    @property
+    def left(self) -> int:
+        """Number of jobs that have not come back."""
+        return len(self._undone)
+
+    @property
+    def failed(self) -> int:
+        """Number of jobs that have failed, or could not begin."""
+        return len(self._lost)
+
+    def take(self, *, all_cores: bool) -> Job | None:
+        """Return a job to be done now, in a folder that is ready for it; None if there is none.
+
+        Parameters
+        ----------
+        all_cores
+            Whether to choose among those that use all processors, or among the others.
+        """
+        self._give_up_what_waits_for_lost()
+        for job in self._waiting:
+            if job.task.all_cores == all_cores and not job.needs & self._undone.keys():
+                self._waiting.remove(job)
+                job.prepare()
+                return job
+        return None
+
+    def take_back(self, job: Job, outcome: dict[str, Any] | DiedError) -> None:
+        """Keep what a job came to, or tell why it failed."""
+        del self._undone[job.folder]
+        if isinstance(outcome, DiedError):
+            self._lose(job, f"died with every worker that tried it ({outcome})")
+        elif outcome["status"] != DONE:
+            self._lose(job, f"ended with status {outcome['status']}: {outcome['said']}")
+        else:
+            job.keep(outcome)
+
+    def _give_up_what_waits_for_lost(self) -> None:
+        for job in [one for one in self._waiting if one.needs & self._lost]:
+            self._waiting.remove(job)
+            del self._undone[job.folder]
+            self._lose(job, "needs one that has failed")
+
+    def _lose(self, job: Job, why: str) -> None:
+        self._lost.add(job.folder)
+        notice(f"{job.told} {why}")

@@ -1,0 +1,172 @@
+"""`undula reproduce`: the catalogue computed as far as it is missing, judged, and reported."""
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from undula.analysis.integrate import interruptible
+from undula.app.answers import DONE, STOPPED_EARLY, finite, notice, reply
+from undula.app.catalogue_tasks import Job, answers_of, carry_out, jobs_of, refuse_other_files
+from undula.app.catalogue_work import TaskWork
+from undula.app.claim_rows import row_of, rows_text, tally
+from undula.app.pool import pool
+from undula.app.progress import swept
+from undula.app.report import write_report
+from undula.studies.items import Item, catalogue, chosen
+from undula.studies.whole_file import claim_output, write_whole
+
+#: The exit status if a claim has another verdict than the one that is known to hold.
+DIFFERS = 1
+_PATIENCE = 0.2
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a call asks for.
+
+    Attributes
+    ----------
+    names
+        Items; none stands for all.
+    quick
+        Whether coarser grids will do.
+    out
+        Folder of the report.
+    workers
+        Processes; by default one for each processor.
+    budget
+        Seconds after which to stop with what there is.
+    vector
+        Whether figures are kept as PDF files as well.
+    fresh
+        Whether tasks are done again that are done already.
+    """
+
+    names: tuple[str, ...]
+    quick: bool
+    out: Path
+    workers: int | None
+    budget: float
+    vector: bool
+    fresh: bool
+
+
+def list_items(*, as_json: bool) -> int:
+    """Tell all items of the catalogue; return the exit status."""
+    items = catalogue()
+    listed = [
+        {"name": name, "title": item.title, "paper": item.paper, "claims": len(item.claims)}
+        for name, item in items.items()
+    ]
+    width = max(map(len, items))
+    text = "\n".join(
+        f"{one['name']:<{width}}  {one['title']}" + (f" ({one['paper']})" if one["paper"] else "")
+        for one in listed
+    )
+    reply({"status": "done", "items": listed}, text, as_json=as_json)
+    return DONE
+
+
+def reproduce(asked: Asked, *, as_json: bool) -> int:
+    """Compute what is missing, judge the claims, write the report, and answer.
+
+    Returns
+    -------
+    int
+        The exit status: 0 if all claims came out as is known, 1 if not, 3 if some of the tasks are
+        left or have failed, those done being kept.
+
+    Raises
+    ------
+    InputError
+        There is no such item, or the folder cannot be written or is full.
+    """
+    items = catalogue()
+    wanted = chosen(items, asked.names)
+    refuse_other_files(asked.out)
+    claim_output(asked.out / "claims.json", overwrite=True)
+    jobs = jobs_of(items, asked.out / "data", quick=asked.quick)
+    left = [job for job in _needed(wanted, jobs) if asked.fresh or job.kept() is None]
+    status = _carry_on(left, asked)
+    rows = {name: _rows(name, item, jobs, asked) for name, item in items.items()}
+    page = write_report(asked.out, items, rows, jobs, quick=asked.quick, vector=asked.vector)
+    claims = [row for name in items for row in rows[name]]
+    content = json.dumps(finite({"quick": asked.quick, "claims": claims}), indent=1)
+    write_whole(asked.out / "claims.json", content.encode(), overwrite=True)
+    told = [row for name in wanted for row in rows[name]]
+    answer = {
+        "status": status,
+        "report": str(page),
+        "claims_file": str(asked.out / "claims.json"),
+        "verdicts": tally(told),
+        "claims": told,
+    }
+    reply(answer, rows_text(told, page), as_json=as_json)
+    if status != "done":
+        notice(f"the reproduction was {status}; the same command goes on from there")
+        return STOPPED_EARLY
+    return DONE if all(row["as_expected"] for row in told) else DIFFERS
+
+
+def _needed(wanted: Mapping[str, Item], jobs: Mapping[str, Job]) -> list[Job]:
+    """Return the jobs of items, with those of others that they use."""
+    places = [f"{name}/{task}" for name, item in wanted.items() for task in item.tasks]
+    places += [place for item in wanted.values() for place in item.uses.values()]
+    found = [jobs[place] for place in dict.fromkeys(places) if place in jobs]
+    by_folder = {job.folder: job for job in jobs.values()}
+    queue = list(found)
+    while queue:
+        for folder in queue.pop().needs:
+            if by_folder[folder] not in found:
+                found.append(by_folder[folder])
+                queue.append(by_folder[folder])
+    return found
+
+
+def _rows(name: str, item: Item, jobs: Mapping[str, Job], asked: Asked) -> list[dict[str, Any]]:
+    """Return the rows of an item's claims, without those that have not been asked for yet."""
+    answers = answers_of(item, name, jobs)
+    rows = [row_of(name, item, claim, answers, jobs, quick=asked.quick) for claim in item.claims]
+    return [row for row in rows if row is not None]
+
+
+def _carry_on(left: list[Job], asked: Asked) -> str:
+    """Do the jobs, as far as time and patience go; return how it ended."""
+    if not left:
+        return "done"
+    end = time.monotonic() + asked.budget
+    work = TaskWork(left)
+    with interruptible() as interrupted:
+
+        def stopped() -> bool:
+            return interrupted() or time.monotonic() > end
+
+        while not stopped() and (job := work.take(all_cores=True)) is not None:
+            notice(job.told)
+            work.take_back(job, carry_out(_with_workers(job, asked.workers), quietly=False))
+        with (
+            pool(asked.workers, None, _say_nothing) as workers,
+            swept("reproducing", work.total, work.left, "tasks") as tell,
+        ):
+            while work.left and not stopped():
+                while workers.has_room and (job := work.take(all_cores=False)) is not None:
+                    workers.give(job, carry_out, job.command)
+                for job, outcome in workers.come_back(_PATIENCE):
+                    work.take_back(job, outcome)
+                tell(work.left, work.failed)
+        if work.left:
+            return "interrupted" if interrupted() else "out of time"
+    return "incomplete" if work.failed else "done"
+
+
+def _with_workers(job: Job, workers: int | None) -> tuple[str, ...]:
+    if workers is None or job.command[0] != "sweep":
+        return job.command
+    return (*job.command, "--workers", str(workers))
+
+
+def _say_nothing(sentence: str) -> None:
+    """Keep the dashboard's address to ourselves: there is one for each study as well."""

@@ -1,0 +1,50 @@
+"""The command that computes the paper anew: reproduce."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from undula.app.options import Budget, Json, seconds_of
+
+
+def reproduce(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[ITEM]...", help="Items of the catalogue; without any, all."),
+    ] = None,
+    listed: Annotated[bool, typer.Option("--list", help="Tell all items, and stop.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Coarser grids, and without what takes long.")
+    ] = False,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path(
+        "report"
+    ),
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", min=1, help="Processes on this machine.", show_default="one a processor"
+        ),
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Compute again what is kept from before.")
+    ] = False,
+    vector: Annotated[
+        bool, typer.Option("--vector", help="Write the figures as PDF files, too.")
+    ] = False,
+    budget: Budget = None,
+    as_json: Json = False,
+) -> int:
+    """Compute the figures, tables and statements of the paper anew, and judge each statement.
+
+    Writes index.html and claims.json into DIR, and the data of every command below DIR/data. What
+    was computed before, by the same sources, is not computed again.
+    """
+    from undula.app.reproducing import Asked, list_items
+    from undula.app.reproducing import reproduce as carry_out
+
+    if listed:
+        return list_items(as_json=as_json)
+    seconds = seconds_of(budget)
+    asked = Asked(tuple(names or ()), quick, out, workers, seconds, vector, fresh)
+    return carry_out(asked, as_json=as_json)
