@@ -39,6 +39,8 @@ class Job:
         What its answer depends on: the command, its input files, and the sources of undula.
     needs
         Folders of the jobs that have to come before.
+    as_in_full
+        Whether the full report has the same.
     """
 
     item: str
@@ -48,6 +50,7 @@ class Job:
     folder: Path
     key: str
     needs: frozenset[Path]
+    as_in_full: bool
 
     @property
     def told(self) -> str:
@@ -83,32 +86,52 @@ class Job:
 
 def jobs_of(items: Mapping[str, Item], data: Path, *, quick: bool) -> dict[str, Job]:
     """Return the jobs of items by `item/task`, without those that a quick report leaves out."""
-    jobs = {}
-    for item_name, item in items.items():
-        wanted = {name: one for name, one in item.tasks.items() if one.command(quick=quick)}
-        folders = {
-            name: data
-            / item_name
-            / (name if one.command(quick=quick) == one.call else f"{name}-quick")
-            for name, one in wanted.items()
-        }
-        for name, task in wanted.items():
-            jobs[f"{item_name}/{name}"] = _job(item_name, name, task, folders, quick=quick)
-    return jobs
+    return {
+        f"{name}/{job.name}": job
+        for name, item in items.items()
+        for job in _jobs(name, item, data / name, quick=quick).values()
+    }
 
 
-def _job(item: str, name: str, task: Task, folders: Mapping[str, Path], *, quick: bool) -> Job:
+def _jobs(item_name: str, item: Item, data: Path, *, quick: bool) -> dict[str, Job]:
+    """Return the jobs of an item by the names of their tasks."""
+    made: dict[str, Job] = {}
+
+    def job_of(name: str) -> Job:
+        if name not in made:
+            task = item.tasks[name]
+            needed = {other: job_of(other) for other in task.needs(quick=quick)}
+            made[name] = _job(item_name, name, task, needed, data, quick=quick)
+        return made[name]
+
+    for name, task in item.tasks.items():
+        if task.command(quick=quick) is not None:
+            job_of(name)
+    return made
+
+
+def _job(
+    item: str, name: str, task: Task, needed: Mapping[str, Job], data: Path, *, quick: bool
+) -> Job:
     template = task.command(quick=quick) or ""
-    needs = task.needs(quick=quick)
-    places = {needed: str(folders[needed]) for needed in needs}
-    places |= {"out": str(folders[name]), "inputs": _shown(INPUTS)}
-    command = tuple(word.format_map(places) for word in shlex.split(template))
+    as_in_full = template == task.call and all(job.as_in_full for job in needed.values())
+    folder = data / (name if as_in_full else f"{name}-quick")
+    places = {other: str(job.folder) for other, job in needed.items()}
+    places |= {"out": str(folder), "inputs": _shown(INPUTS)}
+    command = tuple(_filled(word, places) for word in shlex.split(template))
     inputs = [path for path in map(Path, command) if path.parent == Path(_shown(INPUTS))]
     digest = hashlib.sha256(package_digest().encode())
-    for part in (template, *(path.read_text("utf-8") for path in inputs)):
+    parts = [template, *(path.read_text("utf-8") for path in inputs)]
+    for part in (*parts, *(job.key for job in needed.values())):
         digest.update(b"\0" + part.encode())
-    before = frozenset(folders[needed] for needed in needs)
-    return Job(item, name, task, command, folders[name], digest.hexdigest(), before)
+    before = frozenset(job.folder for job in needed.values())
+    return Job(item, name, task, command, folder, digest.hexdigest(), before, as_in_full)
+
+
+def _filled(word: str, places: Mapping[str, str]) -> str:
+    for name, place in places.items():
+        word = word.replace(f"{{{name}}}", place)
+    return word
 
 
 def _shown(path: Path) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from undula.errors import InputError
-from undula.studies import measures
+from undula.studies import measures, slips, study_measures
 from undula.studies.items import (
     CONFIRMED,
     CORRECTED,
@@ -17,9 +17,14 @@ from undula.studies.items import (
     Claim,
 )
 
+_ROOMS = (measures, study_measures, slips)
 #: What expressions may use besides the answers.
 _WORDS: Mapping[str, Any] = {
-    **{name: getattr(measures, name) for name in measures.__all__},
+    **{
+        name: getattr(room, name)
+        for room in (measures, slips, study_measures)
+        for name in room.__all__
+    },
     **{word.__name__: word for word in (abs, all, any, float, len, max, min, round, sorted, sum)},
     "log": np.log,
     "pi": np.pi,

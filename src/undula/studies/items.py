@@ -118,6 +118,7 @@ class Figure(Table):
     file: str | None = Field(None, description="a file in the folder of a task, as {task}/run.png")
     view: str | None = Field(None, description="the name of a view of answers")
     of: list[str] = Field([], description="the tasks whose answers the view draws")
+    page: str | None = Field(None, description="a page for the mouse, as {task}/page.html")
 
     @model_validator(mode="after")
     def _one_source(self) -> "Figure":

@@ -1,45 +1,37 @@
-"""What the claims of the catalogue measure on answers, beyond arithmetic."""
+"""What the claims of the catalogue measure on answers, beyond arithmetic.
+
+Curves are points in any order; a claim on a range asks where a condition holds without a gap.
+"""
 
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from undula.arrays import Points
-from undula.errors import InputError
-from undula.studies.store import load_result
-from undula.studies.study_store import load_study
 
 __all__ = [
     "at",
-    "between",
     "crossing",
+    "falling",
+    "first_present",
+    "forces",
     "holding",
-    "result",
-    "study",
+    "largest_spread",
+    "minimum",
+    "missing",
+    "on",
+    "peak",
+    "regimes",
+    "slowness",
+    "spinning_energy",
 ]
 
-
-def result(answer: Any) -> xr.Dataset:
-    """Return the stored run of an answer of `undula run`."""
-    return load_result(answer.folder / "run.nc")
-
-
-def study(answer: Any) -> xr.Dataset:
-    """Return the stored study of an answer of `undula sweep`, kept as study.zarr."""
-    return load_study(answer.folder / "study.zarr")
+FORCE = "load.force"
 
 
 def at(where: float, of: ArrayLike, values: ArrayLike) -> float:
-    """Return the value at a place between neighbouring ones, by a parabola through three.
-
-    Parameters
-    ----------
-    where
-        The place.
-    of, values
-        Places, increasing, and the values there.
+    """Return the value of a curve at a place, by the parabola through three points around it.
 
     Raises
     ------
@@ -51,14 +43,14 @@ def at(where: float, of: ArrayLike, values: ArrayLike) -> float:
         raise ValueError(f"{where:g} is outside of {places[0]:g} to {places[-1]:g}")
     middle = int(np.clip(np.searchsorted(places, where), 1, len(places) - 2))
     near = slice(middle - 1, middle + 2)
-    offsets = places[near] - where
-    return float(np.polynomial.polynomial.polyfit(offsets, known[near], 2)[0])
+    return float(_parabola(places[near] - where, known[near])[0])
 
 
-def between(low: float, high: float, of: ArrayLike, values: ArrayLike) -> Points:
-    """Return the values at places from `low` to `high`."""
+def on(where: ArrayLike, of: ArrayLike, values: ArrayLike) -> Points:
+    """Return a curve at several places, from the nearest three of its own points each."""
     places, known = _sorted(of, values)
-    return known[(places >= low) & (places <= high)]
+    wanted = np.asarray(where, dtype=float)
+    return np.array([at(min(max(one, places[0]), places[-1]), places, known) for one in wanted])
 
 
 def holding(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
@@ -67,9 +59,9 @@ def holding(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
     Parameters
     ----------
     of
-        Places, increasing.
+        Places.
     condition
-        Positive where it holds; the ends are where it passes through zero.
+        Positive where it holds; the range ends where it passes through zero, or with the places.
     around
         A place inside.
 
@@ -82,21 +74,20 @@ def holding(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
     inside = int(np.abs(places - around).argmin())
     if not margin[inside] > 0.0:
         raise ValueError(f"it does not hold at {around:g}")
-    failing = ~(margin > 0.0)
-    before = np.flatnonzero(failing[:inside])
-    after = np.flatnonzero(failing[inside:])
-    low = places[0] if not len(before) else _zero(places, margin, int(before[-1]))
-    high = places[-1] if not len(after) else _zero(places, margin, inside + int(after[0]) - 1)
-    return [float(low), float(high)]
+    failing = np.flatnonzero(~(margin > 0.0))
+    before, after = failing[failing < inside], failing[failing > inside]
+    low = _zero(places, margin, int(before[-1])) if len(before) else float(places[0])
+    high = _zero(places, margin, int(after[0]) - 1) if len(after) else float(places[-1])
+    return [low, high]
 
 
 def crossing(of: ArrayLike, values: ArrayLike) -> float:
-    """Return the first place at which values, linear in between, pass through zero.
+    """Return the first place at which a curve, straight between its points, passes through zero.
 
     Raises
     ------
     ValueError
-        They do not.
+        It does not.
     """
     places, known = _sorted(of, values)
     changes = np.flatnonzero(np.sign(known[1:]) != np.sign(known[:-1]))
@@ -105,16 +96,94 @@ def crossing(of: ArrayLike, values: ArrayLike) -> float:
     return _zero(places, known, int(changes[0]))
 
 
+def peak(of: ArrayLike, values: ArrayLike) -> float:
+    """Return the place of the first maximum of a curve inside of its ends.
+
+    Raises
+    ------
+    ValueError
+        There is none.
+    """
+    places, known = _sorted(of, values)
+    inner = known[1:-1]
+    tops = np.flatnonzero((inner > known[:-2]) & (inner >= known[2:])) + 1
+    if not len(tops):
+        raise ValueError("the values have no maximum inside")
+    top = int(tops[0])
+    near = slice(top - 1, top + 2)
+    _, slope, bend = _parabola(places[near] - places[top], known[near])
+    return float(places[top] - slope / (2.0 * bend))
+
+
+def minimum(first: ArrayLike, second: ArrayLike) -> Points:
+    """Return the smaller of two values, place by place: both conditions have to hold."""
+    return np.asarray(np.minimum(first, second), dtype=float)
+
+
+def falling(values: ArrayLike) -> bool:
+    """Return whether every value is smaller than the one before."""
+    return bool((np.diff(np.asarray(values, dtype=float)) < 0.0).all())
+
+
+def missing(values: ArrayLike) -> Any:
+    """Return where an answer has no value."""
+    return np.isnan(np.asarray(values, dtype=float))
+
+
+def first_present(of: ArrayLike, values: ArrayLike) -> list[float]:
+    """Return the place from which on there are values, and half of the gap before as its error."""
+    places, known = _sorted(of, values)
+    first = int(np.flatnonzero(~np.isnan(known))[0])
+    low = places[max(first - 1, 0)]
+    return [float((low + places[first]) / 2.0), float((places[first] - low) / 2.0)]
+
+
+def forces(branch: Any, *, above: float = 0.0) -> Points:
+    """Return the forces of the points of a branch, of those above a force."""
+    every = np.asarray(branch.points[FORCE], dtype=float)
+    return every[every > above]
+
+
+def spinning_energy(branch: Any, *, above: float = 0.0) -> Points:
+    """Return the bending energies of the points of a branch of spinning states."""
+    every = np.asarray(branch.points.bending_energy, dtype=float)
+    return every[np.asarray(branch.points[FORCE], dtype=float) > above]
+
+
+def slowness(spinning: Any, flapping: Any) -> Points:
+    """Return 1 - flapping/spinning of the frequencies, at the points of the branch of flapping."""
+    fast = on(forces(flapping), spinning.points[FORCE], spinning.points.frequency)
+    return 1.0 - np.asarray(flapping.points.frequency, dtype=float) / fast
+
+
+def regimes(steps: Any) -> str:
+    """Return the verdicts of a series of steps in their order, without what is undecided."""
+    order = [verdict for verdict in steps.regimes.verdict if verdict != "undecided"]
+    return ", ".join(dict.fromkeys(order))
+
+
+def largest_spread(steps: Any, verdict: str) -> float:
+    """Return the largest relative range of the bending energy among steps of one verdict."""
+    wanted = steps.steps.verdict == verdict
+    low, high = steps.steps["bending_energy/min"], steps.steps["bending_energy/max"]
+    mean = steps.steps["bending_energy/mean"]
+    return float(((high - low) / mean)[wanted].max())
+
+
+def _parabola(places: Points, values: Points) -> Points:
+    """Return the coefficients of the parabola through three points, the constant first."""
+    matrix = np.vander(places, 3, increasing=True)
+    return np.asarray(np.linalg.solve(matrix, values))
+
+
 def _zero(places: Points, values: Points, left: int) -> float:
     a, b = values[left], values[left + 1]
-    if not np.isfinite(a + b):
-        return float(places[left + 1] if np.isfinite(b) else places[left])
     return float(places[left] - a * (places[left + 1] - places[left]) / (b - a))
 
 
 def _sorted(of: ArrayLike, values: ArrayLike) -> tuple[Points, Points]:
     places, known = np.asarray(of, dtype=float), np.asarray(values, dtype=float)
     if len(places) < 3:
-        raise InputError(f"a curve of {len(places)} points is too short; give at least 3")
+        raise ValueError(f"a curve of {len(places)} points is too short")
     order = np.argsort(places, kind="stable")
     return places[order], known[order]
