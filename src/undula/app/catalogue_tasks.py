@@ -16,7 +16,7 @@ from undula.app.answers import DONE
 from undula.compiled import package_digest
 from undula.errors import InputError
 from undula.studies.claims import Answer
-from undula.studies.items import INPUTS, Item, Task
+from undula.studies.items import Item, Task
 from undula.studies.whole_file import write_whole
 
 #: File in the folder of a task that holds its answer.
@@ -84,16 +84,28 @@ class Job:
         write_whole(mark, self.key.encode(), overwrite=True)
 
 
-def jobs_of(items: Mapping[str, Item], data: Path, *, quick: bool) -> dict[str, Job]:
-    """Return the jobs of items by `item/task`, without those that a quick report leaves out."""
+def jobs_of(items: Mapping[str, Item], inputs: Path, data: Path, *, quick: bool) -> dict[str, Job]:
+    """Return the jobs of items by `item/task`, without those that a quick report leaves out.
+
+    Parameters
+    ----------
+    items
+        By name.
+    inputs
+        Folder of the input files of their commands.
+    data
+        Folder of all that the commands write.
+    quick
+        Whether the report is the quick one.
+    """
     return {
         f"{name}/{job.name}": job
         for name, item in items.items()
-        for job in _jobs(name, item, data / name, quick=quick).values()
+        for job in _jobs(name, item, inputs, data / name, quick=quick).values()
     }
 
 
-def _jobs(item_name: str, item: Item, data: Path, *, quick: bool) -> dict[str, Job]:
+def _jobs(item_name: str, item: Item, inputs: Path, data: Path, *, quick: bool) -> dict[str, Job]:
     """Return the jobs of an item by the names of their tasks."""
     made: dict[str, Job] = {}
 
@@ -101,7 +113,7 @@ def _jobs(item_name: str, item: Item, data: Path, *, quick: bool) -> dict[str, J
         if name not in made:
             task = item.tasks[name]
             needed = {other: job_of(other) for other in task.needs(quick=quick)}
-            made[name] = _job(item_name, name, task, needed, data, quick=quick)
+            made[name] = _job(item_name, name, task, needed, inputs, data, quick=quick)
         return made[name]
 
     for name, task in item.tasks.items():
@@ -111,17 +123,24 @@ def _jobs(item_name: str, item: Item, data: Path, *, quick: bool) -> dict[str, J
 
 
 def _job(
-    item: str, name: str, task: Task, needed: Mapping[str, Job], data: Path, *, quick: bool
+    item: str,
+    name: str,
+    task: Task,
+    needed: Mapping[str, Job],
+    inputs: Path,
+    data: Path,
+    *,
+    quick: bool,
 ) -> Job:
     template = task.command(quick=quick) or ""
     as_in_full = template == task.call and all(job.as_in_full for job in needed.values())
     folder = data / (name if as_in_full else f"{name}-quick")
     places = {other: str(job.folder) for other, job in needed.items()}
-    places |= {"out": str(folder), "inputs": _shown(INPUTS)}
+    places |= {"out": str(folder), "inputs": _shown(inputs)}
     command = tuple(_filled(word, places) for word in shlex.split(template))
-    inputs = [path for path in map(Path, command) if path.parent == Path(_shown(INPUTS))]
+    read = [path for path in map(Path, command) if path.parent == Path(places["inputs"])]
     digest = hashlib.sha256(package_digest().encode())
-    parts = [template, *(path.read_text("utf-8") for path in inputs)]
+    parts = [template, *(path.read_text("utf-8") for path in read)]
     for part in (*parts, *(job.key for job in needed.values())):
         digest.update(b"\0" + part.encode())
     before = frozenset(job.folder for job in needed.values())

@@ -14,8 +14,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from undula.app.catalogue_tasks import Job, answers_of
 from undula.app.claim_rows import number_text, tally
 from undula.app.drawing import figure_bytes
+from undula.app.report_pages import packed_library, packed_pages
 from undula.errors import InputError
-from undula.studies.items import Figure, Item, Verdict
+from undula.studies.items import Figure, Item, Paper, Verdict
 from undula.studies.whole_file import write_whole
 from undula.views import reproduced
 
@@ -43,6 +44,7 @@ class Shown:
 
 def write_report(
     out: Path,
+    paper: Paper,
     items: Mapping[str, Item],
     rows: Mapping[str, Sequence[Mapping[str, Any]]],
     jobs: Mapping[str, Job],
@@ -64,10 +66,12 @@ def write_report(
             "rows": rows[name],
             "figures": _figures(out, name, item, jobs, vector=vector),
             "movies": _movies(out, name, item, jobs),
+            "pages": packed_pages(item, answers_of(item, name, jobs)),
             "commands": _commands(name, item, jobs),
         }
         for name, item in items.items()
     ]
+    shown = [section for section in sections if _has_content(section)]
     claims = [row for name in items for row in rows[name]]
     environment = Environment(
         loader=PackageLoader("undula.app", "."),
@@ -78,7 +82,9 @@ def write_report(
     )
     environment.filters["number"] = number_text
     page = environment.get_template("report.html.j2").render(
-        sections=[section for section in sections if _has_content(section)],
+        paper=paper,
+        sections=shown,
+        library=packed_library() if any(section["pages"] for section in shown) else "",
         claims=claims,
         verdicts={verdict: tally(claims).get(verdict, 0) for verdict in _VERDICTS},
         unexpected=[row for row in claims if not row["as_expected"]],

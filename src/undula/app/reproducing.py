@@ -15,7 +15,7 @@ from undula.app.claim_rows import row_of, rows_text, tally
 from undula.app.pool import pool
 from undula.app.progress import swept
 from undula.app.report import write_report
-from undula.studies.items import Item, catalogue, chosen
+from undula.studies.items import Item, catalogue, chosen, paper_of
 from undula.studies.whole_file import claim_output, write_whole
 
 #: The exit status if a claim has another verdict than the one that is known to hold.
@@ -29,6 +29,8 @@ class Asked:
 
     Attributes
     ----------
+    catalogue
+        Folder of the items.
     names
         Items; none stands for all.
     quick
@@ -45,6 +47,7 @@ class Asked:
         Whether tasks are done again that are done already.
     """
 
+    catalogue: Path
     names: tuple[str, ...]
     quick: bool
     out: Path
@@ -54,9 +57,15 @@ class Asked:
     fresh: bool
 
 
-def list_items(*, as_json: bool) -> int:
-    """Tell all items of the catalogue; return the exit status."""
-    items = catalogue()
+def list_items(folder: Path, *, as_json: bool) -> int:
+    """Tell all items of a catalogue; return the exit status.
+
+    Raises
+    ------
+    InputError
+        There is no catalogue, or an item is wrong.
+    """
+    items = catalogue(folder)
     listed = [
         {"name": name, "title": item.title, "paper": item.paper, "claims": len(item.claims)}
         for name, item in items.items()
@@ -84,15 +93,15 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
     InputError
         There is no such item, or the folder cannot be written or is full.
     """
-    items = catalogue()
+    items, paper = catalogue(asked.catalogue), paper_of(asked.catalogue)
     wanted = chosen(items, asked.names)
     refuse_other_files(asked.out)
     claim_output(asked.out / "claims.json", overwrite=True)
-    jobs = jobs_of(items, asked.out / "data", quick=asked.quick)
+    jobs = jobs_of(items, asked.catalogue / "inputs", asked.out / "data", quick=asked.quick)
     left = [job for job in _needed(wanted, jobs) if asked.fresh or job.kept() is None]
     status = _carry_on(left, asked)
     rows = {name: _rows(name, item, jobs, asked) for name, item in items.items()}
-    page = write_report(asked.out, items, rows, jobs, quick=asked.quick, vector=asked.vector)
+    page = write_report(asked.out, paper, items, rows, jobs, quick=asked.quick, vector=asked.vector)
     claims = [row for name in items for row in rows[name]]
     content = json.dumps(finite({"quick": asked.quick, "claims": claims}), indent=1)
     write_whole(asked.out / "claims.json", content.encode(), overwrite=True)

@@ -20,6 +20,10 @@ def reproduce(
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path(
         "report"
     ),
+    catalogue: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Another catalogue of items.", show_default=False),
+    ] = None,
     workers: Annotated[
         int | None,
         typer.Option(
@@ -42,9 +46,11 @@ def reproduce(
     """
     from undula.app.reproducing import Asked, list_items
     from undula.app.reproducing import reproduce as carry_out
+    from undula.studies.items import CATALOGUE
 
+    folder = catalogue or CATALOGUE
     if listed:
-        return list_items(as_json=as_json)
+        return list_items(folder, as_json=as_json)
     seconds = seconds_of(budget)
-    asked = Asked(tuple(names or ()), quick, out, workers, seconds, vector, fresh)
+    asked = Asked(folder, tuple(names or ()), quick, out, workers, seconds, vector, fresh)
     return carry_out(asked, as_json=as_json)

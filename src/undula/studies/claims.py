@@ -133,6 +133,8 @@ def judge(claim: Claim, answers: Mapping[str, Answer]) -> Outcome:
         other = None
         if claim.agrees_with is not None:
             other = _plain(_evaluate(claim, claim.agrees_with, answers))
+    except InputError:
+        raise
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as trouble:
         return Outcome(None, None, None, f"{type(trouble).__name__}: {trouble}")
     if value is None or (isinstance(value, float) and not np.isfinite(value)):

@@ -1,25 +1,25 @@
 """Items of the catalogue: what the paper says, what is computed to check it, and what is drawn.
 
 Each is a TOML file in the folder `catalogue`. It holds inputs and published values, and nothing
-that this package has computed.
+that this package has computed. Beside the items the folder holds `paper.toml`, which names the
+paper, and the folder `inputs` with input files of commands, such as studies of many runs.
 """
 
 import ast
 import re
 import tomllib
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 from pydantic import Field, ValidationError, model_validator
 
 from undula.errors import InputError
-from undula.studies.complaints import explain, nearest
+from undula.studies.complaints import nearest
 from undula.studies.strict_table import Table, conflict
 
+#: The catalogue of this package.
 CATALOGUE = Path(__file__).parent / "catalogue"
-#: Input files that commands of items read, such as studies of many runs.
-INPUTS = CATALOGUE / "inputs"
+_PAPER = "paper.toml"
 
 CONFIRMED = "confirmed"
 WITHIN_RANGE = "confirmed within a stated range"
@@ -30,6 +30,7 @@ Verdict = Literal[
     "confirmed", "confirmed within a stated range", "corrected", "not reproducible as stated"
 ]
 Value = bool | float | str
+Read = TypeVar("Read", bound=Table)
 _PLACE = re.compile(r"\{([\w-]+)\}")
 _BUILT_IN = ("out", "inputs")
 
@@ -131,6 +132,11 @@ class Figure(Table):
         """Names of the tasks that have to be done for it."""
         return frozenset(self.of if self.file is None else _PLACE.findall(self.file))
 
+    @property
+    def asks_for_page(self) -> frozenset[str]:
+        """Names of the tasks that have to be done for its page."""
+        return frozenset(_PLACE.findall(self.page or ""))
+
 
 class Movie(Table):
     """A movie that a task wrote."""
@@ -159,15 +165,36 @@ class Item(Table):
     movies: list[Movie] = Field([], description="movies")
 
 
+class Paper(Table):
+    """What the catalogue is about."""
+
+    title: str = Field(description="the title of the report")
+    about: str = Field(description="which paper, and what was done with it")
+
+
+def paper_of(folder: Path) -> Paper:
+    """Return what a catalogue is about.
+
+    Raises
+    ------
+    InputError
+        Its file is missing or wrong.
+    """
+    return _read(folder / _PAPER, Paper)
+
+
 def catalogue(folder: Path = CATALOGUE) -> dict[str, Item]:
     """Return all items by name, in the order of the report.
 
     Raises
     ------
     InputError
-        A file is no item, or refers to something that is not there.
+        There are none, a file is no item, or refers to something that is not there.
     """
-    items = {path.stem: _read(path) for path in sorted(folder.glob("*.toml"))}
+    files = sorted(path for path in folder.glob("*.toml") if path.name != _PAPER)
+    if not files:
+        raise InputError(f"there is no catalogue in {folder}; give a folder with items as .toml")
+    items = {path.stem: _read(path, Item) for path in files}
     ordered = dict(sorted(items.items(), key=lambda entry: entry[1].order))
     for name, item in ordered.items():
         _check(name, item, ordered)
@@ -190,12 +217,15 @@ def chosen(items: dict[str, Item], names: tuple[str, ...]) -> dict[str, Item]:
     return {name: item for name, item in items.items() if not names or name in names}
 
 
-@cache
-def _read(path: Path) -> Item:
+def _read(path: Path, record: type[Read]) -> Read:
     try:
-        return Item.model_validate(tomllib.loads(path.read_text("utf-8")))
+        return record.model_validate(tomllib.loads(path.read_text("utf-8")))
     except ValidationError as error:
-        raise InputError(f"{path.name}: {explain(error, Item)}") from error
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"])) or "the file"
+        raise InputError(
+            f"{path.name}: {place}: {first['msg']}; mend it as undula/studies/items.py tells"
+        ) from error
     except (OSError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{path.name} cannot be read as TOML ({error}); mend the file") from error
 
@@ -208,7 +238,7 @@ def _check(name: str, item: Item, items: dict[str, Item]) -> None:
     known = {*item.tasks, *item.uses}
     figures = {figure.name for figure in item.figures}
     needed = [(f"task {key}", one.needs(quick=False)) for key, one in item.tasks.items()]
-    needed += [(f"figure {one.name}", tuple(one.asks)) for one in item.figures]
+    needed += [(f"figure {one.name}", (*one.asks, *one.asks_for_page)) for one in item.figures]
     needed += [("a movie", tuple(one.asks)) for one in item.movies]
     for who, names in needed:
         for missing in set(names) - known:

@@ -5,6 +5,7 @@ import html
 import json
 import re
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -87,13 +88,14 @@ def phase_page(
     told = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     return FRAME.format(
         title=html.escape(plain(heading(store) if title is None else title)),
-        library=_library(),
+        library=plotting_library(),
         content=told,
         script=SCRIPT,
     )
 
 
-def _library() -> str:
+@cache
+def plotting_library() -> str:
     """Return the plotting library without the addresses of other machines.
 
     They belong to maps and to services that this page does not use. Names in its notices stay.
