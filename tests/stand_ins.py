@@ -1,0 +1,103 @@
+"""Small stand-ins for what pages take for granted: examples, results, and where work begins."""
+
+from pathlib import Path
+from typing import Any, NoReturn
+
+import pytest
+
+from pages import ROOT
+from small_studies import done, study_of
+from undula.analysis.kinds import kind_of
+from undula.analysis.parameters import changed, value_of
+from undula.analysis.thresholds import THRESHOLDS
+from undula.app.cli import main
+from undula.studies.build import build_model
+
+STUDY = """
+[model]
+segments = 4
+[load]
+profile = "point"
+[time]
+until = 0.05
+samples = 60
+[[study.axes]]
+key = "load.position"
+values = [0.9, 1.0]
+[[study.axes]]
+key = "load.force"
+values = [20, 100]
+"""
+QUICK = ["--set", "time.until=0.02", "--set", "time.samples=100"]
+FEW_LINKS = ["--set", "model.kind=chain", "--set", "time.until=0.5", "--set"]
+
+
+def examples_in(folder: Path) -> None:
+    """Put the examples where a reader has them who stands at the root of the repository."""
+    (folder / "examples").symlink_to(ROOT / "examples")
+
+
+def results_in(folder: Path) -> None:
+    """Make small results of the kinds and names that pages open; the folder is the working one."""
+    run = ["run", "--set", "model.segments=4", *QUICK, "--no-movie", "--out", "results/spinning"]
+    assert main(run) == 0
+    for links in range(2, 7):
+        along = ["--along", "load.force=1:2:1", "--out", f"results/chain{links}"]
+        assert main(["step", *FEW_LINKS, f"model.links={links}", *along]) == 0
+    done(study_of(folder, STUDY), folder / "results" / "point-loads.zarr")
+
+
+class BegunError(Exception):
+    """A command has understood its line and would begin to work."""
+
+
+def _begins(*_: Any, **__: Any) -> NoReturn:
+    raise BegunError
+
+
+def _finds(_: Any, kind: str, **__: Any) -> NoReturn:
+    kind_of(kind)
+    raise BegunError
+
+
+def _follows(model: Any, kind: str, way: Any, **_: Any) -> NoReturn:
+    value_of(model, way.parameter)
+    if kind != "straight":
+        kind_of(kind)
+    raise BegunError
+
+
+def _tells(model: Any, threshold: str, along: Any = None, **_: Any) -> NoReturn:
+    assert threshold in THRESHOLDS
+    if along is not None:
+        changed(model, along[0], along[1][0])
+    raise BegunError
+
+
+def _asks(question: Any, _: Any) -> NoReturn:
+    if question.along is not None:
+        parameter, values = question.along
+        changed(build_model(question.wanted), parameter, values[0])
+    raise BegunError
+
+
+BEGINNINGS = {
+    "undula.app.jobs.begin": _begins,
+    "undula.app.jobs.take_up": _begins,
+    "undula.app.stepping.step_along": _begins,
+    "undula.app.stability.ask": _asks,
+    "undula.app.finding.find": _finds,
+    "undula.app.following.follow_along": _follows,
+    "undula.app.thresholding.tell_threshold": _tells,
+    "undula.app.thresholding.tell_thresholds": _tells,
+    "undula.app.sweeping.open_study": _begins,
+    "undula.app.sweeping.load_study": _begins,
+    "undula.app.diagrams.plot_study": _begins,
+    "undula.studies.store.load_result": _begins,
+}
+
+
+def stop_where_work_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have every command raise `BegunError` where its work would begin."""
+    for place, beginning in BEGINNINGS.items():
+        monkeypatch.setattr(place, beginning)
