@@ -51,7 +51,7 @@ paper = "Section 2"
 about = "Runs of few links."
 
 [tasks.runs]
-call = "sweep {inputs}/small.toml --out {out}/study.zarr --workers 1"
+call = "sweep {inputs}/small.toml --out {out}/study.zarr"
 all_cores = true
 
 [tasks.diagram]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from undula.analysis.integrate import interruptible
-from undula.app.answers import DONE, STOPPED_EARLY, finite, notice, reply
+from undula.app.answers import DONE, INTERRUPTED, STOPPED_EARLY, finite, notice, reply
 from undula.app.catalogue_tasks import Job, answers_of, carry_out, jobs_of, refuse_other_files
 from undula.app.catalogue_work import TaskWork
 from undula.app.claim_rows import row_of, rows_text, tally
@@ -155,7 +155,10 @@ def _carry_on(left: list[Job], asked: Asked) -> str:
 
         while not stopped() and (job := work.take(all_cores=True)) is not None:
             notice(job.told)
-            work.take_back(job, carry_out(_with_workers(job, asked.workers), quietly=False))
+            outcome = carry_out(_limited(job, asked.workers, end), quietly=False)
+            if _was_stopped(outcome):
+                return str(outcome["answer"].get("status", "interrupted"))
+            work.take_back(job, outcome)
         with (
             pool(asked.workers, None, _say_nothing) as workers,
             swept("reproducing", work.total, work.left, "tasks") as tell,
@@ -171,10 +174,20 @@ def _carry_on(left: list[Job], asked: Asked) -> str:
     return "incomplete" if work.failed else "done"
 
 
-def _with_workers(job: Job, workers: int | None) -> tuple[str, ...]:
-    if workers is None or job.command[0] != "sweep":
+def _limited(job: Job, workers: int | None, end: float) -> tuple[str, ...]:
+    """Return the command of a job that uses all cores, with the workers and time that it has."""
+    if job.command[0] != "sweep":
         return job.command
-    return (*job.command, "--workers", str(workers))
+    limits = [] if workers is None else ["--workers", str(workers)]
+    if end < float("inf"):
+        limits += ["--budget", str(max(end - time.monotonic(), 1e-3))]
+    return (*job.command, *limits)
+
+
+def _was_stopped(outcome: dict[str, Any]) -> bool:
+    """Tell whether a command was left before its end, which the same command goes on from."""
+    early = outcome["status"] in (STOPPED_EARLY, INTERRUPTED)
+    return early and outcome["answer"].get("status", "interrupted") != "done"
 
 
 def _say_nothing(sentence: str) -> None:
