@@ -8,9 +8,15 @@ from undula.app.answers import DONE, notice
 from undula.app.catalogue_tasks import Job
 from undula.app.pool import DiedError
 
+#: Keys of an input that choose other compiled code.
+_CODE = ("model.kind", "model.confined", "model.twist", "model.inextensibility", "model.spring")
+
 
 class TaskWork:
     """Jobs that wait for others, or for a worker; the longest go first.
+
+    The first job of a kind may have to compile its kernels. While it does, others of its kind stand
+    back, so that two workers do not compile the same.
 
     Parameters
     ----------
@@ -22,6 +28,8 @@ class TaskWork:
         self._waiting = sorted(jobs, key=lambda job: -job.task.cost)
         self._undone = {job.folder: job for job in jobs}
         self._lost: set[Path] = set()
+        self._first: set[frozenset[str]] = set()
+        self._compiled: set[frozenset[str]] = set()
         self.total = len(jobs)
 
     @property
@@ -43,16 +51,25 @@ class TaskWork:
             Whether to choose among those that use all processors, or among the others.
         """
         self._give_up_what_waits_for_lost()
-        for job in self._waiting:
-            if job.task.all_cores == all_cores and not job.needs & self._undone.keys():
-                self._waiting.remove(job)
-                job.prepare()
-                return job
-        return None
+        free = [
+            job
+            for job in self._waiting
+            if job.task.all_cores == all_cores and not job.needs & self._undone.keys()
+        ]
+        if not free:
+            return None
+        job = next((one for one in free if _kind(one) not in self._first), free[0])
+        self._waiting.remove(job)
+        if _kind(job) not in self._compiled:
+            self._first.add(_kind(job))
+        job.prepare()
+        return job
 
     def take_back(self, job: Job, outcome: dict[str, Any] | DiedError) -> None:
         """Keep what a job came to, or tell why it failed."""
         del self._undone[job.folder]
+        self._first.discard(_kind(job))
+        self._compiled.add(_kind(job))
         if isinstance(outcome, DiedError):
             self._lose(job, f"died with every worker that tried it ({outcome})")
         elif outcome["status"] != DONE:
@@ -69,3 +86,9 @@ class TaskWork:
     def _lose(self, job: Job, why: str) -> None:
         self._lost.add(job.folder)
         notice(f"{job.told} {why}")
+
+
+def _kind(job: Job) -> frozenset[str]:
+    """Return what of a command tells which kernels it needs, as far as that matters."""
+    chosen = (word for word in job.command if word.startswith(_CODE))
+    return frozenset((*job.command[:1], *chosen, *{"--lyapunov", "flapping"} & {*job.command}))

@@ -3,7 +3,7 @@
 import base64
 import platform
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -16,11 +16,21 @@ from undula.app.claim_rows import number_text, tally
 from undula.app.drawing import figure_bytes
 from undula.app.report_pages import packed_library, packed_pages
 from undula.errors import InputError
+from undula.studies.claims import Answer
 from undula.studies.items import Figure, Item, Paper, Verdict
+from undula.studies.steps_store import load_steps
+from undula.studies.store import load_result
+from undula.studies.study_store import load_study
 from undula.studies.whole_file import write_whole
 from undula.views import reproduced
 
 _KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
+#: What tasks store besides their answers, and who reads it.
+_STORED: Mapping[str, Callable[[Path], Any]] = {
+    "run.nc": load_result,
+    "steps.nc": load_steps,
+    "study.zarr": load_study,
+}
 _VERDICTS: tuple[str, ...] = Verdict.__args__  # type: ignore[attr-defined]
 
 
@@ -120,19 +130,21 @@ def _figures(
     for figure in item.figures:
         if not figure.asks <= answers.keys():
             continue
-        suffix, content = _content(figure, answers)
+        suffix, content = _content(figure, answers, jobs)
         source = f"data:{_KINDS[suffix]};base64,{base64.b64encode(content).decode()}"
         shown.append(Shown(figure.name, figure.shows, figure.caption, source))
         if vector:
-            _write_vector(out / "figures" / f"{name}-{figure.name}.pdf", figure, answers)
+            path = out / "figures" / f"{name}-{figure.name}.pdf"
+            _write_vector(path, figure, answers, jobs)
     return shown
 
 
-def _content(figure: Figure, answers: Mapping[str, Any]) -> tuple[str, bytes]:
+def _content(
+    figure: Figure, answers: Mapping[str, Answer], jobs: Mapping[str, Job]
+) -> tuple[str, bytes]:
     """Return the ending and the content of a figure's file."""
     if figure.view is not None:
-        drawn = reproduced.VIEWS[figure.view](*(answers[name] for name in figure.of))
-        return ".svg", figure_bytes(drawn, ".svg")
+        return ".svg", figure_bytes(_drawn(figure, answers, jobs), ".svg")
     path = _path(figure.file or "", answers)
     try:
         return path.suffix, path.read_bytes()
@@ -140,10 +152,27 @@ def _content(figure: Figure, answers: Mapping[str, Any]) -> tuple[str, bytes]:
         raise InputError(f"{path} is gone; run the same command with --fresh") from error
 
 
-def _write_vector(path: Path, figure: Figure, answers: Mapping[str, Any]) -> None:
+def _drawn(figure: Figure, answers: Mapping[str, Answer], jobs: Mapping[str, Job]) -> Any:
+    """Draw the view of a figure from what its tasks came to."""
+    view = reproduced.VIEWS[figure.view or ""]
+    return view(*(_outcome(answers[name], jobs) for name in figure.of))
+
+
+def _outcome(answer: Answer, jobs: Mapping[str, Job]) -> Any:
+    """Return the dataset that a task stored or, where it stored none, its plain JSON answer."""
+    for name, load in _STORED.items():
+        if answer.folder is not None and (answer.folder / name).exists():
+            return load(answer.folder / name)
+    records = (job.kept() for job in jobs.values() if job.folder == answer.folder)
+    return next(record["answer"] for record in records if record is not None)
+
+
+def _write_vector(
+    path: Path, figure: Figure, answers: Mapping[str, Answer], jobs: Mapping[str, Job]
+) -> None:
     """Write a figure as PDF; one that is stored as pixels is kept as it is, beside it."""
     if figure.view is not None:
-        drawn = reproduced.VIEWS[figure.view](*(answers[name] for name in figure.of))
+        drawn = _drawn(figure, answers, jobs)
         write_whole(path, figure_bytes(drawn, ".pdf"), overwrite=True)
         return
     source = _path(figure.file or "", answers)
