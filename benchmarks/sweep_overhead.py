@@ -47,8 +47,9 @@ from = 5.0
 to = 105.0
 count = 100
 """
-#: Points that are done in this process as well.
-SAMPLED = 600
+#: Points that are done in this process as well, each so often that the quickest of each phase is
+#: not that of a processor which something else has slowed down.
+SAMPLED, TIMES = 600, 5
 #: The same study at forces under which filaments flap, from a start in a plane.
 FLAPPING = {
     "from = 5.0": "from = 150.0",
@@ -109,14 +110,15 @@ def phases(study: Study, number: int) -> tuple[str, Clock]:
 
 
 def here(study: Study, count: int) -> dict[str, list[Clock]]:
-    """Return the times of some points, by verdict."""
+    """Return the quickest times of some points, by verdict."""
     # At random: points at equal steps would have few of the forces.
     chosen = np.random.default_rng(1).choice(study.count, min(count, study.count), replace=False)
     phases(study, 0)  # by now the kernels are there
     found: dict[str, list[Clock]] = {}
     for number in chosen.tolist():
-        name, clock = phases(study, number)
-        found.setdefault(name, []).append(clock)
+        names, clocks = zip(*(phases(study, number) for _ in range(TIMES)), strict=True)
+        quickest = (min(getattr(clock, f.name) for clock in clocks) for f in fields(Clock))
+        found.setdefault(names[0], []).append(Clock(*quickest))
     return found
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from undula.analysis.alignment import aligned_distance, fixed_distance
-from undula.analysis.observables import arc_weights, displacement, envelope, transverse
+from undula.analysis.alignment import Compare, aligned_distance, fixed_distance, largest_distance
+from undula.analysis.observables import arc_weights, displacement, mean_position, transverse
 from undula.analysis.planes import planarity, plane_angle
-from undula.analysis.shape_sums import link_squares
+from undula.analysis.shape_sums import gather, largest_bend, link_squares
 from undula.analysis.turning import lowest_direction
 from undula.arrays import Array
 
@@ -50,6 +50,40 @@ def test_shapes_are_aligned_pair_by_pair(first: Array, second: Array) -> None:
     assert (found.distance <= fixed_distance(first, second).distance + 1e-14).all()
 
 
+@pytest.mark.parametrize("compare", [aligned_distance, fixed_distance])
+def test_the_largest_distance_is_that_of_the_farthest_shape(compare: Compare) -> None:
+    several, one = shapes(30), shapes(1, 2)[0]
+    expected = compare(several, one).distance.max()
+    assert largest_distance(several, one, compare) == pytest.approx(expected, rel=1e-12)
+
+
+def test_shapes_that_differ_by_turns_have_no_distance() -> None:
+    one = shapes(1)[0]
+    angles = np.linspace(0.0, 6.0, 7)
+    cosine, sine, zero = np.cos(angles), np.sin(angles), np.zeros(7)
+    axes = np.array([[cosine, -sine, zero], [sine, cosine, zero], [zero, zero, zero + 1.0]])
+    turned = np.einsum("abi,kb->ika", axes, one)
+    # Distances of round-off alone, as coordinates are of order one.
+    assert largest_distance(turned, one, aligned_distance) < 1e-15
+    assert largest_distance(turned, one, fixed_distance) > 0.1
+    upright = np.linspace(0.0, 1.0, 10)[:, None] * [0.0, 0.0, 1.0]
+    assert largest_distance(upright[None], upright, aligned_distance) == 0.0
+
+
+def test_numbers_are_gathered_from_their_places() -> None:
+    rows, places = np.random.default_rng(5).normal(size=(4, 11)), np.arange(12).reshape(4, 3)[::-1]
+    nodes = np.empty((4, 4, 3))
+    gather(rows, places - 1, nodes)
+    padded = np.concatenate([np.zeros((4, 1)), rows], axis=1)
+    np.testing.assert_array_equal(nodes, padded[:, places])
+
+
+def test_mean_positions_are_those_of_the_formula() -> None:
+    nodes = shapes(6).reshape(2, 3, 10, 3)
+    expected = np.sum(arc_weights(10)[:, None] * nodes, axis=-2)
+    np.testing.assert_allclose(mean_position(nodes), expected, **CLOSE)
+
+
 def test_displacements_are_those_of_the_formula() -> None:
     nodes = shapes(6).reshape(2, 3, 10, 3)
     away = nodes - np.linspace(0.0, 1.0, 10)[:, None] * [0.0, 0.0, 1.0]
@@ -75,25 +109,12 @@ def test_links_have_the_lengths_bends_and_directions_of_their_ends() -> None:
     along = links / length[..., None]
     before = np.concatenate([np.broadcast_to([0.0, 0.0, 1.0], (5, 1, 3)), along[:, :-1]], axis=1)
     angle = np.arccos(np.sum(along * before, axis=2)).max()
-    least, largest, bend = link_squares(nodes)
+    least, largest = link_squares(nodes)
     assert (least, largest) == pytest.approx((length.min() ** 2, length.max() ** 2), rel=1e-14)
-    assert 2.0 * np.arctan(np.sqrt(bend)) == pytest.approx(angle, rel=1e-10)
+    assert 2.0 * np.arctan(np.sqrt(largest_bend(nodes))) == pytest.approx(angle, rel=1e-10)
     np.testing.assert_allclose(lowest_direction(nodes), along[..., 2].min(axis=0), **CLOSE)
 
 
 def test_a_joint_that_is_folded_has_the_angle_pi() -> None:
     nodes = np.array([[[0.0, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, 0.0]]])
-    assert 2.0 * np.arctan(np.sqrt(link_squares(nodes)[2])) == np.pi
-
-
-def test_extremes_between_samples_are_those_of_parabolas() -> None:
-    values = np.random.default_rng(3).normal(size=50)
-    before, here, after = values[:-2], values[1:-1], values[2:]
-    vertex = here + (after - before) ** 2 / (8.0 * (2.0 * here - before - after))
-    tops = vertex[(here >= before) & (here >= after)]
-    bottoms = vertex[(here <= before) & (here <= after)]
-    found = envelope(values)
-    assert found.max == pytest.approx(max(tops.max(), values.max()), rel=1e-14)
-    assert found.min == pytest.approx(min(bottoms.min(), values.min()), rel=1e-14)
-    level = envelope(np.full(5, 0.25))
-    assert (level.min, level.max, level.mean) == (0.25, 0.25, 0.25)
+    assert 2.0 * np.arctan(np.sqrt(largest_bend(nodes))) == np.pi

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from undula.analysis.observables import arc_weights, as_shapes
-from undula.analysis.shape_sums import align
+from undula.analysis.shape_sums import align, largest_turned
 from undula.arrays import Array
 
 
@@ -73,6 +73,17 @@ def fixed_distance(shape_a: Array, shape_b: Array) -> Alignment:
 
 #: How two shapes are compared.
 Compare = Callable[[Array, Array], Alignment]
+
+
+def largest_distance(shapes: Array, shape: Array, compare: Compare) -> float:
+    """Return the largest distance of shapes (m, N + 1, 3) from one (N + 1, 3) [L].
+
+    At the points of a study this is asked often: distances alone take half as long as with angles.
+    """
+    if compare is aligned_distance:
+        place = np.ascontiguousarray(shape)
+        return float(largest_turned(as_shapes(shapes), place, arc_weights(len(shape))))
+    return float(np.max(compare(shapes, shape).distance))
 
 
 def comparison(*, axisymmetric: bool) -> Compare:

@@ -10,13 +10,17 @@ mode's log-amplitude and phase over the whole window give sigma.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import lapack
 
-from undula.analysis.observables import arc_weights
-from undula.analysis.planes import in_plane, plane_angle
-from undula.arrays import Array, ComplexArray, Instants, Shapes
+from undula.analysis.decay_sums import deflect, fit_step, follow, pair
+from undula.analysis.observables import arc_weights, as_shapes
+from undula.analysis.planes import plane_angle
+from undula.analysis.sample_sums import line_slope
+from undula.arrays import Array, Instants, Shapes
 
 # A second direction weaker than this is noise or a faster mode about to vanish: one mode is left.
 SECOND_DIRECTION = 1e-3
@@ -71,54 +75,55 @@ def linear_motion(time: Instants, nodes: Shapes) -> LinearMotion | None:
     """
     if len(time) < MIN_SAMPLES:
         return None
-    deflection, _ = in_plane(nodes, plane_angle(nodes))
-    sizes = np.linalg.norm(deflection, axis=1)
-    if not np.all(sizes > 0.0):
+    along, weights = np.empty(nodes.shape[:2]), arc_weights(nodes.shape[1])
+    crossings, moved = deflect(as_shapes(nodes), plane_angle(nodes), weights, along)
+    if not moved:
         return None
-    crossings = _crossings(deflection)
     lag = max(1, int(LAG_SHARE * len(time) / (crossings + 1)))
-    amplitude = _leading_amplitude(deflection, lag)
-    clock = time[: len(amplitude)]
-    rate, turning = _slopes(clock, amplitude)
+    logs, phases = _leading_amplitude(along, lag)
+    clock = np.ascontiguousarray(time[: len(logs)])
     half = len(clock) // 2
-    rates = [_slopes(clock[:half], amplitude[:half])[0], _slopes(clock[half:], amplitude[half:])[0]]
+    rate, *rates = (
+        line_slope(clock[part], logs[part], False)
+        for part in (slice(None), slice(half), slice(half, None))
+    )
     return LinearMotion(
         rate=rate,
         rate_error=max(abs(other - rate) for other in rates),
-        frequency=abs(turning) / (2.0 * np.pi),
+        frequency=abs(line_slope(clock, phases, False)) / (2.0 * np.pi),
         crossings=crossings,
     )
 
 
-def _crossings(deflection: Array) -> int:
-    mean = deflection @ arc_weights(deflection.shape[1])
-    signs = np.sign(mean[mean != 0.0])
-    return int(np.count_nonzero(signs[1:] != signs[:-1]))
-
-
-def _leading_amplitude(deflection: Array, lag: int) -> ComplexArray:
-    """Amplitude of the slowest mode, sample by sample, up to a constant factor."""
-    paired = np.concatenate([deflection[:-lag], deflection[lag:]], axis=1)
-    sizes = np.linalg.norm(paired, axis=1)
-    even = paired / sizes[:, None]
+def _leading_amplitude(along: Array, lag: int) -> tuple[Array, Array]:
+    """Logarithm and phase of the amplitude of the slowest mode, up to constants."""
+    pairs = len(along) - lag
+    even, sizes = np.empty((pairs, 2 * along.shape[1])), np.empty(pairs)
+    pair(along, lag, even, sizes)
     # The squares of singular values: quicker than these, and exact enough for the first two.
-    squares, directions = np.linalg.eigh(even.T @ even)
-    rank = 2 if squares[-2] > SECOND_DIRECTION**2 * squares[-1] else 1
-    path = paired @ directions[:, : -rank - 1 : -1]
-    # Each pair counts the same in the fit, however far the motion has decayed.
-    before, after = path[:-lag] / sizes[:-lag, None], path[lag:] / sizes[:-lag, None]
-    step, *_ = np.linalg.lstsq(before, after, rcond=None)
-    values, vectors = np.linalg.eig(step)
-    leading = int(np.argmax(np.abs(values)))
-    return np.asarray(path @ vectors[:, leading], dtype=np.complex128)
+    width = even.shape[1]
+    squares, directions, *_ = lapack.dsyevr(even.T @ even, range="I", il=width - 1, iu=width)
+    path = even @ np.ascontiguousarray(directions[:, ::-1])
+    vector = np.array([1.0, 0.0, 0.0])
+    if squares[0] > SECOND_DIRECTION**2 * squares[1]:
+        step = np.empty((2, 2))
+        fit_step(path, sizes, lag, step)
+        vector[:] = leading_vector(*step.ravel().tolist())
+    logs, phases = np.empty(pairs), np.empty(pairs)
+    follow(path, sizes, vector, logs, phases)
+    return logs, phases
 
 
-def _slopes(clock: Instants, amplitude: ComplexArray) -> tuple[float, float]:
-    """Rate [1/T] and angular frequency from straight lines through log-amplitude and phase."""
-    logs = np.log(np.maximum(np.abs(amplitude), np.finfo(np.float64).tiny))
-    centred = clock - np.mean(clock)
-    steepness = float(np.sum(centred**2))
-    turning = 0.0
-    if np.any(amplitude.imag != 0.0):
-        turning = float(centred @ np.unwrap(np.angle(amplitude))) / steepness
-    return float(centred @ logs) / steepness, turning
+def leading_vector(a: float, b: float, c: float, d: float) -> tuple[float, float, float]:
+    """Return an eigenvector of [[a, b], [c, d]] to the eigenvalue that is largest in size.
+
+    The first entry is real; the second has the real and the imaginary part that follow.
+    """
+    half = 0.5 * (a - d)
+    square = half * half + b * c
+    if square < 0.0:
+        return b, -half, math.sqrt(-square)
+    root = math.copysign(math.sqrt(square), a + d)
+    # Of the two rows that tell it, the one without cancellation.
+    first, second = (half + root, c) if half * root >= 0.0 else (b, root - half)
+    return (first, second, 0.0) if first or second else (1.0, 0.0, 0.0)

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from undula.analysis.alignment import Compare, aligned_distance
+from undula.analysis.alignment import Compare, aligned_distance, largest_distance
 from undula.analysis.decay import LinearMotion, linear_motion
 from undula.analysis.frequency import Frequency, rotation_frequency, whole_motion_frequency
 from undula.analysis.observables import displacement, envelope, mean_position, transverse
@@ -89,7 +89,7 @@ class Evidence:
     def shape_change(self) -> float:
         """Largest distance from the middle sample's shape after the best turn."""
         middle = self.nodes[len(self.nodes) // 2]
-        return float(np.max(self.compare(self.nodes, middle).distance)) / self.displacement
+        return largest_distance(self.nodes, middle, self.compare) / self.displacement
 
     @cached_property
     def shape_drift(self) -> float:

@@ -12,8 +12,8 @@ import numpy as np
 
 from undula.analysis.fundamental import PART, ROUND_OFF, Frequency, find_frequency
 from undula.analysis.observables import mean_position, tip_height, transverse
-from undula.analysis.spectral import hann
-from undula.arrays import Array, Instants, Shapes
+from undula.analysis.sample_sums import line_slope, mean_and_deviation
+from undula.arrays import Instants, Shapes
 
 __all__ = [
     "Frequency",
@@ -91,9 +91,14 @@ def shape_swings(nodes: Shapes, bending_energy: Instants) -> bool:
 
 
 def _swinging(nodes: Shapes, bending_energy: Instants) -> list[Instants]:
-    """Return the quantities that oscillate, with standard deviation 1."""
-    both = (_relative(1.0 - tip_height(nodes)), _relative(bending_energy))
-    return [values / np.std(values) for values in both if np.std(values) > STEADY]
+    """Return the quantities that oscillate, with mean 0 and standard deviation 1."""
+    found = []
+    for values in (1.0 - tip_height(nodes), bending_energy):
+        mean, deviation = mean_and_deviation(values)
+        # A mean that is round-off has nothing to be relative to.
+        if abs(mean) > UNMOVED and deviation > STEADY * abs(mean):
+            found.append((values - mean) / deviation)
+    return found
 
 
 def rotation_frequency(time: Instants, rotation_angle: Instants) -> Frequency | None:
@@ -119,24 +124,13 @@ def rotation_frequency(time: Instants, rotation_angle: Instants) -> Frequency | 
     if count < 4:
         return None
     turns = rotation_angle / (2.0 * np.pi)
-    value = _line_slope(time, turns, hann(count))
+    value = line_slope(time, turns, True)
     part = max(3, round(PART * count))
     others = [
-        _line_slope(time[:part], turns[:part], hann(part)),
-        _line_slope(time[-part:], turns[-part:], hann(part)),
-        _line_slope(time, turns, np.full(count, 1.0 / count)),
+        line_slope(time[:part], turns[:part], True),
+        line_slope(time[-part:], turns[-part:], True),
+        line_slope(time, turns, False),
     ]
     spread = max(abs(other - value) for other in others)
     size = 1.0 + float(np.max(np.abs(turns)))
     return Frequency(value, spread + ROUND_OFF * size / float(time[-1] - time[0]))
-
-
-def _relative(values: Array) -> Array:
-    """Variation about the mean in units of the mean; nothing where the mean is round-off."""
-    mean = float(np.mean(values))
-    return (values - mean) / mean if abs(mean) > UNMOVED else np.zeros_like(values)
-
-
-def _line_slope(time: Instants, values: Array, weights: Array) -> float:
-    clock = time - np.sum(weights * time)
-    return float(np.sum(weights * clock * values) / np.sum(weights * clock**2))

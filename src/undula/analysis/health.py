@@ -1,16 +1,18 @@
 """How well a run was computed: the figures that every result carries."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from undula.analysis.motion import Motion
-from undula.analysis.shape_sums import link_squares
-from undula.analysis.simulation import Simulation
-from undula.arrays import Array, Instants
+from undula.analysis.sample_sums import largest_imbalance
+from undula.analysis.shape_sums import largest_bend, link_squares
+from undula.arrays import Array
 from undula.models.joint import FOLDED
+from undula.models.model import Model
 from undula.numerics import memory as names
 from undula.numerics.system import RATES
 
@@ -64,20 +66,19 @@ class Health:
     frame_changes: int
 
 
-def health_of(simulation: Simulation, motion: Motion) -> Health:
-    """Return the health of a simulation whose samples are `motion`."""
-    real, count = simulation.memory.real, simulation.memory.count
+def health_of(model: Model, motion: Motion, checkpoint: Mapping[str, Array]) -> Health:
+    """Return the health of a run of `motion` that ended at a checkpoint."""
+    real, count = checkpoint["memory_real"], checkpoint["memory_count"]
     steps = int(count[names.STEPS])
-    extremes = link_squares(motion.nodes)
-    angle = 2.0 * math.atan(math.sqrt(extremes[2]))
+    angle = 2.0 * math.atan(math.sqrt(largest_bend(motion.nodes)))
     folds = False
-    if simulation.model.winds or angle > 0.5 * np.pi:
-        angles = np.abs(simulation.model.joint_angles(simulation.states[:, :-RATES]))
+    if model.winds or angle > 0.5 * np.pi:
+        angles = np.abs(model.joint_angles(checkpoint["states"][:, :-RATES]))
         angle = float(angles.max())
-        folds = not simulation.model.winds and folded(motion, angles)
+        folds = not model.winds and folded(motion, angles)
     return Health(
         power_balance_error=power_balance_error(motion),
-        length_error=_length_error(extremes, motion.nodes.shape[1] - 1),
+        length_error=length_error(motion),
         largest_joint_angle=angle,
         folded=folds,
         smallest_step=float(real[names.SMALLEST_STEP]) if steps else 0.0,
@@ -94,16 +95,17 @@ def health_of(simulation: Simulation, motion: Motion) -> Health:
 
 def power_balance_error(motion: Motion) -> float:
     """Return the error of the energy balance, relative to the energy that went through."""
-    energetics = motion.energetics
-    stored: Instants = energetics.bending_energy + energetics.stretching_energy
-    imbalance = stored - stored[0] + motion.loss - motion.work
+    stored = motion.energetics.bending_energy, motion.energetics.stretching_energy
     throughput = float(motion.loss[-1] + abs(motion.work[-1]))
-    return float(np.abs(imbalance).max()) / throughput if throughput > ROUND_OFF else 0.0
+    imbalance: float = largest_imbalance(*stored, motion.work, motion.loss)
+    return imbalance / throughput if throughput > ROUND_OFF else 0.0
 
 
-def _length_error(extremes: tuple[float, ...], links: int) -> float:
-    """Return the largest relative deviation of a link's length from 1/N."""
-    return max(abs(math.sqrt(square) * links - 1.0) for square in extremes[:2])
+def length_error(motion: Motion) -> float:
+    """Return the largest relative deviation of a link's length from 1/N at any sample."""
+    links: int = motion.nodes.shape[1] - 1
+    squares: tuple[float, float] = link_squares(motion.nodes)
+    return max(abs(math.sqrt(square) * links - 1.0) for square in squares)
 
 
 def folded(motion: Motion, angles: Array) -> bool:

@@ -6,6 +6,7 @@ from typing import Self
 
 import numpy as np
 
+from undula.analysis.shape_sums import gather
 from undula.arrays import Array, Instants, Shapes
 from undula.models.model import Energetics, Model
 from undula.numerics.system import RATES
@@ -82,8 +83,8 @@ class Motion:
     def of(cls, model: Model, time: Instants, states: Array) -> Self:
         """Return what rows of a simulation (m, n + RATES) say about the model."""
         unknowns, integrals = states[:, :-RATES], states[:, -RATES:]
-        nodes = model.nodes(model.positions(unknowns))
         angle, work, loss = integrals.T
+        nodes = _nodes(model, states)
         return cls(time, nodes, angle, work, loss, Observed.of(model, unknowns))
 
     def late(self, start: float) -> Self:
@@ -97,3 +98,13 @@ class Motion:
             self.loss[part],
             self.energetics.part(part),
         )
+
+
+def _nodes(model: Model, states: Array) -> Shapes:
+    """Return the nodes of rows of a simulation (m, n + RATES), at once."""
+    # The nodes of a vector that counts tell which unknown each coordinate is; 0 is none.
+    counted = np.arange(1.0, states.shape[1] - RATES + 1.0)
+    places = model.nodes(model.positions(counted)).astype(np.int64) - 1
+    nodes = np.empty((len(states), *places.shape))
+    gather(states, places, nodes)
+    return nodes

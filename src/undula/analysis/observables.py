@@ -13,7 +13,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from undula.analysis.shape_sums import distances_from, extremes
+from undula.analysis.sample_sums import extremes_and_mean
+from undula.analysis.shape_sums import distances_from, means
 from undula.arrays import Array, ComplexArray, Instants, Shapes
 
 
@@ -96,7 +97,10 @@ def mean_position(nodes: Array) -> Array:
     Array
         Shape ``(..., 3)``; (0, 0, 1/2) for the straight filament.
     """
-    return np.asarray(np.einsum("k,...kc->...c", arc_weights(nodes.shape[-2]), nodes))
+    shapes = as_shapes(nodes)
+    found = np.empty((len(shapes), 3))
+    means(shapes, arc_weights(nodes.shape[-2]), found)
+    return found.reshape(*nodes.shape[:-2], 3)
 
 
 def displacement(nodes: Array) -> Array:
@@ -169,5 +173,4 @@ def envelope(values: Instants) -> Range:
     Range
         With the plain mean of the samples.
     """
-    least, largest = extremes(np.ascontiguousarray(values, dtype=np.float64))
-    return Range(min=least, max=largest, mean=float(np.mean(values)))
+    return Range(*extremes_and_mean(np.ascontiguousarray(values, dtype=np.float64)))

@@ -45,8 +45,6 @@ class Run:
         Its last periods at finer intervals; None where the samples are fine enough.
     settled : Settled or None
         How it repeats itself, if it was watched for that and does.
-    health : Health
-        How well it was computed.
     checkpoint : mapping of str to ndarray
         Arrays from which it can be resumed exactly.
     exponents : Exponents
@@ -60,23 +58,20 @@ class Run:
     motion: Motion
     closer: CloseUp | None
     settled: Settled | None
-    health: Health
     checkpoint: Mapping[str, Array]
     exponents: Exponents = Exponents.IF_IRREGULAR
 
     @classmethod
     def of(cls, simulation: Simulation, exponents: Exponents = Exponents.IF_IRREGULAR) -> Self:
         """Return the result that a simulation has come to so far."""
-        motion = Motion.of(simulation.model, simulation.times, simulation.states)
         return cls(
             model=simulation.model,
             schedule=simulation.schedule,
             ending=simulation.ending,
             cause=simulation.cause,
-            motion=motion,
+            motion=Motion.of(simulation.model, simulation.times, simulation.states),
             closer=close_up(simulation),
             settled=simulation.settled,
-            health=health_of(simulation, motion),
             checkpoint=simulation.checkpoint(),
             exponents=exponents,
         )
@@ -91,6 +86,11 @@ class Run:
             self.settled,
             self.exponents,
         )
+
+    @cached_property
+    def health(self) -> Health:
+        """How well it was computed."""
+        return health_of(self.model, self.motion, self.checkpoint)
 
     @property
     def verdict(self) -> Verdict:

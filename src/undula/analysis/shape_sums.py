@@ -1,8 +1,8 @@
 """Compiled sums over the nodes of many shapes, for arrays so small that calls would cost the most.
 
 Shapes are `nodes` (m, N + 1, 3) [L] and `weights` (N + 1,) those of a mean over the arc length. The
-functions around them, in `observables`, `alignment`, `planes`, `turning` and `health`, say what
-they are good for.
+functions around them, in `motion`, `observables`, `alignment`, `planes`, `turning` and `health`,
+say what they are good for.
 """
 
 import math
@@ -14,16 +14,37 @@ from undula.compiled import entry
 
 
 @entry
+def gather(rows: Any, places: Any, nodes: Any) -> None:
+    """Write to nodes the numbers at places (N + 1, 3) of rows (m, n); 0 for a negative place."""
+    for i in range(nodes.shape[0]):
+        for k in range(nodes.shape[1]):
+            for a in range(3):
+                nodes[i, k, a] = rows[i, places[k, a]] if places[k, a] >= 0 else 0.0
+
+
+@entry
 def distances_from(nodes: Any, places: Any, weights: Any, out: Any) -> None:
     """Write to out (m,) how far each shape is from places (N + 1, 3), RMS over the arc length."""
-    for i in range(nodes.shape[0]):
+    # Coordinates in a row are added up several at once.
+    each = np.repeat(weights, 3)
+    rows, place = nodes.reshape(nodes.shape[0], each.shape[0]), places.reshape(each.shape[0])
+    for i in range(rows.shape[0]):
         total = 0.0
-        for k in range(nodes.shape[1]):
-            square = 0.0
-            for a in range(3):
-                square += (nodes[i, k, a] - places[k, a]) ** 2
-            total += weights[k] * square
+        for j in range(each.shape[0]):
+            total += each[j] * (rows[i, j] - place[j]) ** 2
         out[i] = math.sqrt(total)
+
+
+@entry
+def means(nodes: Any, weights: Any, out: Any) -> None:
+    """Write to out (m, 3) the mean position of each shape."""
+    for i in range(nodes.shape[0]):
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(nodes.shape[1]):
+            x += weights[k] * nodes[i, k, 0]
+            y += weights[k] * nodes[i, k, 1]
+            z += weights[k] * nodes[i, k, 2]
+        out[i, 0], out[i, 1], out[i, 2] = x, y, z
 
 
 @entry
@@ -39,13 +60,39 @@ def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> N
             along += weights[k] * (a[k, 0] * b[k, 0] + a[k, 1] * b[k, 1])
             across += weights[k] * (a[k, 1] * b[k, 0] - a[k, 0] * b[k, 1])
         angle[i] = math.atan2(across, along)
-        cosine, sine, total = math.cos(angle[i]), math.sin(angle[i]), 0.0
+        size, total = math.sqrt(along * along + across * across), 0.0
+        cosine, sine = (along / size, across / size) if size > 0.0 else (1.0, 0.0)
         for k in range(weights.shape[0]):
             x = a[k, 0] - cosine * b[k, 0] + sine * b[k, 1]
             y = a[k, 1] - sine * b[k, 0] - cosine * b[k, 1]
             z = a[k, 2] - b[k, 2]
             total += weights[k] * (x * x + y * y + z * z)
         distance[i] = math.sqrt(total)
+
+
+@entry
+def largest_turned(nodes: Any, place: Any, weights: Any) -> Any:
+    """Return the largest distance of shapes from one (N + 1, 3), each after its best turn."""
+    each = np.repeat(weights, 3)
+    rows = nodes.reshape(nodes.shape[0], each.shape[0])
+    beside, across, above = np.zeros(each.shape), np.zeros(each.shape), np.zeros(each.shape)
+    for k in range(weights.shape[0]):
+        beside[3 * k], beside[3 * k + 1] = place[k, 0], place[k, 1]
+        across[3 * k], across[3 * k + 1] = -place[k, 1], place[k, 0]
+        above[3 * k + 2] = place[k, 2]
+    largest = 0.0
+    for i in range(rows.shape[0]):
+        cosine, sine, square = 0.0, 0.0, 0.0
+        for j in range(each.shape[0]):
+            cosine += each[j] * rows[i, j] * beside[j]
+            sine += each[j] * rows[i, j] * across[j]
+        size = math.sqrt(cosine * cosine + sine * sine)
+        cosine, sine = (cosine / size, sine / size) if size > 0.0 else (1.0, 0.0)
+        for j in range(each.shape[0]):
+            turned = cosine * beside[j] + sine * across[j] + above[j]
+            square += each[j] * (rows[i, j] - turned) ** 2
+        largest = max(largest, square)
+    return math.sqrt(largest)
 
 
 @entry
@@ -74,12 +121,24 @@ def squares_in_plane(nodes: Any, weights: Any, angle: Any) -> Any:
 
 @entry
 def link_squares(nodes: Any) -> Any:
-    """Return least and largest square of a link's length, and the largest bend.
+    """Return the least and the largest square of a link's length."""
+    least, largest = np.inf, 0.0
+    for i in range(nodes.shape[0]):
+        for k in range(1, nodes.shape[1]):
+            square = 0.0
+            for a in range(3):
+                square += (nodes[i, k, a] - nodes[i, k - 1, a]) ** 2
+            least, largest = min(least, square), max(largest, square)
+    return least, largest
 
-    That is the square of the tangent of half the angle between neighbouring links, the z axis
-    before the first.
+
+@entry
+def largest_bend(nodes: Any) -> Any:
+    """Return the largest bend at any joint, the z axis before the first link.
+
+    That is the square of the tangent of half the angle between neighbouring links.
     """
-    least, largest, bend = np.inf, 0.0, 0.0
+    bend = 0.0
     for i in range(nodes.shape[0]):
         x0, y0, z0 = 0.0, 0.0, 1.0
         for k in range(1, nodes.shape[1]):
@@ -88,33 +147,13 @@ def link_squares(nodes: Any) -> Any:
                 nodes[i, k, 1] - nodes[i, k - 1, 1],
                 nodes[i, k, 2] - nodes[i, k - 1, 2],
             )
-            square = x * x + y * y + z * z
-            least, largest = min(least, square), max(largest, square)
-            length = math.sqrt(square)
+            length = math.sqrt(x * x + y * y + z * z)
             x, y, z = x / length, y / length, z / length
             apart = (x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2
             together = (x + x0) ** 2 + (y + y0) ** 2 + (z + z0) ** 2
             bend = max(bend, apart / together)
             x0, y0, z0 = x, y, z
-    return least, largest, bend
-
-
-@entry
-def extremes(values: Any) -> Any:
-    """Return the least and the largest of samples (m,) and of the parabolas through their tops."""
-    least, largest = values[0], values[0]
-    for i in range(values.shape[0]):
-        least, largest = min(least, values[i]), max(largest, values[i])
-    for i in range(1, values.shape[0] - 1):
-        rise, fall = values[i] - values[i - 1], values[i] - values[i + 1]
-        if rise + fall == 0.0:
-            continue
-        vertex = values[i] + (rise - fall) ** 2 / (8.0 * (rise + fall))
-        if rise >= 0.0 and fall >= 0.0:
-            largest = max(largest, vertex)
-        elif rise <= 0.0 and fall <= 0.0:
-            least = min(least, vertex)
-    return least, largest
+    return bend
 
 
 @entry

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from undula.analysis.decay import MIN_SAMPLES, LinearMotion, linear_motion
+from undula.analysis.sample_sums import still_ahead
 from undula.arrays import Instants, Shapes
 
 # Below this share of its peak the motion is left out: there the integration error takes over.
@@ -96,9 +97,8 @@ def straightening(time: Instants, nodes: Shapes, away: Instants) -> Straightenin
     Straightening
     """
     # The largest displacement still to come: swings through straight do not count as arrival.
-    ahead = np.maximum.accumulate(away[::-1])[::-1]
-    peak = int(np.flatnonzero(ahead == ahead[0])[-1])
-    stop = int(np.count_nonzero(ahead > FLOOR * ahead[peak]))
+    ahead = np.empty(len(away))
+    peak, stop = still_ahead(away, FLOOR, ahead)
     start = (peak + stop) // 2
     end = len(time) - max(1, round(END_SHARE * len(time)))
     late = slice(start, stop if peak < (1.0 - PEAK_SHARE) * len(time) else start)

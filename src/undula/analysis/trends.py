@@ -9,9 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from undula.analysis.alignment import aligned_distance
+from undula.analysis.alignment import aligned_distance, largest_distance
 from undula.analysis.observables import displacement
 from undula.analysis.planes import planarity
 from undula.analysis.spectral import hann
@@ -62,7 +60,7 @@ def _halves(samples: Array, measure: Callable[[Array], float]) -> Halves:
 def _change(nodes: Shapes) -> float:
     middle = nodes[len(nodes) // 2]
     size = float(displacement(middle)) or 1.0
-    return float(np.max(aligned_distance(nodes, middle).distance)) / size
+    return largest_distance(nodes, middle, aligned_distance) / size
 
 
 def _variance(values: Array) -> float:
