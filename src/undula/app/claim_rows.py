@@ -22,7 +22,7 @@ def row_of(
     *,
     quick: bool,
 ) -> dict[str, Any] | None:
-    """Return the row of a claim; None if what it needs has not been computed.
+    """Return the row of a claim; None if what it needs has not been computed, or only in full.
 
     Parameters
     ----------
@@ -37,6 +37,8 @@ def row_of(
     quick
         Whether the report is the quick one.
     """
+    if quick and claim.only_full:
+        return None
     asked = [local for local in (*item.tasks, *item.uses) if local in claim.asks]
     if any(local not in answers for local in asked):
         return None

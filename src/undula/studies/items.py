@@ -88,6 +88,7 @@ class Claim(Table):
     note: str = Field("", description="what is to be said of the outcome")
     expected: Verdict = Field("confirmed", description="the verdict that is known to hold")
     figure: str | None = Field(None, description="the name of a figure that shows it")
+    only_full: bool = Field(False, description="true if coarser grids do not show it")
     erratum: bool = Field(False, description="true for a slip of the paper")
 
     @model_validator(mode="after")

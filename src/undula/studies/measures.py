@@ -16,6 +16,7 @@ __all__ = [
     "falling",
     "first_present",
     "forces",
+    "gaining",
     "holding",
     "largest_spread",
     "minimum",
@@ -142,6 +143,20 @@ def forces(branch: Any, *, above: float = 0.0) -> Points:
     """Return the forces of the points of a branch, of those above a force."""
     every = np.asarray(branch.points[FORCE], dtype=float)
     return every[every > above]
+
+
+def gaining(branch: Any) -> float:
+    """Return the least force at which the states of a branch gain stability.
+
+    Raises
+    ------
+    ValueError
+        They never do.
+    """
+    gained = branch.bifurcations.value[branch.bifurcations.stability == "gained"]
+    if not len(gained):
+        raise ValueError("no state of the branch gains stability")
+    return float(gained.min())
 
 
 def spinning_energy(branch: Any, *, above: float = 0.0) -> Points:
