@@ -4,6 +4,9 @@ Run with `python benchmarks/sweep_overhead.py [POINTS]`; 10,000 points by defaul
 minutes. One worker does the whole study, the driver on another processor. Some points, and some of
 flapping, are also done in this process, phase by phase: a bare integration is that of a run until
 it has settled and been shown; time that the naming asks for on top is told apart.
+
+What a point gets besides its bare integration is told by one worker that does the same points with
+and without it, a piece of either in turn, so that both have the same machine.
 """
 
 import sys
@@ -50,6 +53,8 @@ count = 100
 #: Points that are done in this process as well, each so often that the quickest of each phase is
 #: not that of a processor which something else has slowed down.
 SAMPLED, TIMES = 600, 5
+#: Points that one worker does with and without what a sweep adds, and in a piece of either.
+COMPARED, PIECE = 2400, 100
 #: The same study at forces under which filaments flap, from a start in a plane.
 FLAPPING = {
     "from = 5.0": "from = 150.0",
@@ -133,6 +138,50 @@ def tell(found: Mapping[str, list[Clock]]) -> float:
     return float(np.mean([clock.build + clock.bare for clock in everything]))
 
 
+def integrated(tables: list[Mapping[str, Any]]) -> float:
+    """Integrate points and do nothing else, in a worker; return the seconds it took."""
+    began = time.perf_counter()
+    for each in tables:
+        wanted = parse_input(each)
+        model = build_model(wanted)
+        simulation = Simulation.begin(model, build_start(wanted, model), build_schedule(wanted))
+        while simulation.advance():
+            pass
+    return time.perf_counter() - began
+
+
+def done(study: Mapping[str, Any], numbers: tuple[int, ...]) -> float:
+    """Do points as a sweep does them, in a worker; return the seconds it took."""
+    began = time.perf_counter()
+    while numbers:
+        _, records = points(study, numbers)
+        numbers = numbers[len(records) :]
+    return time.perf_counter() - began
+
+
+def in_turn(study: Study, count: int) -> tuple[float, float]:
+    """Return milliseconds of a bare integration and of a whole point, in one worker, in turn."""
+    chosen = np.random.default_rng(2).choice(study.count, min(count, study.count), replace=False)
+    pieces = [tuple(piece.tolist()) for piece in np.array_split(chosen, max(count // PIECE, 2))]
+    spent = np.zeros(2)
+    with pool(1, None, print) as workers:
+
+        def ask(work: Any, *what: Any) -> float:
+            workers.give(None, work, *what)
+            while not (back := list(workers.come_back(0.05))):
+                pass
+            return float(back[0][1])
+
+        ask(done, study.dump(), pieces[0][:2])  # by now all is loaded
+        for turn, piece in enumerate(pieces):
+            for which in (0, 1) if turn % 2 else (1, 0):
+                whole = which == 1
+                what = (study.dump(), piece) if whole else ([study.tables(n) for n in piece],)
+                spent[which] += ask(done if whole else integrated, *what)
+    bare, whole_point = (1e3 * spent / chosen.size).tolist()
+    return bare, whole_point
+
+
 @dataclass
 class Watched:
     """What a sweep has used."""
@@ -174,18 +223,24 @@ def main() -> None:
         study = study_of(Path(folder), count)
         bare = tell(here(study, SAMPLED))
         tell(here(study_of(Path(folder), count, FLAPPING), SAMPLED // 10))
+        compared = in_turn(study, COMPARED)
         watched = swept(study, Path(folder) / "s.zarr")
-        report(study, bare, watched, Path(folder) / "s.zarr")
+        report(study, bare, compared, watched, Path(folder) / "s.zarr")
 
 
-def report(study: Study, bare: float, watched: Watched, path: Path) -> None:
+def report(
+    study: Study, bare: float, compared: tuple[float, float], watched: Watched, path: Path
+) -> None:
     """Print the table of a sweep."""
     stored = load_study(path)
     inside = 1e3 * float(stored["seconds"].mean())
     files = [file.stat().st_size for file in path.rglob("*") if file.is_file()]
     rows: dict[str, Any] = {
         "input and bare integration": f"{bare:.2f} ms a point, in this process",
-        "a whole point in the worker": f"{inside:.2f} ms a point",
+        "the same in a worker, in turn with": f"{compared[0]:.2f} ms a point",
+        "a whole point": f"{compared[1]:.2f} ms a point",
+        "naming, figures and record": f"{compared[1] - compared[0]:.2f} ms a point",
+        "a whole point in the sweep": f"{inside:.2f} ms a point",
         "wall time of the sweep, one worker": f"{watched.wall:.2f} ms a point",
         "scheduling and storing": f"{watched.wall - inside:.2f} ms a point",
         "processor time of the driver": f"{watched.driver:.2f} ms a point",
