@@ -93,6 +93,7 @@ BEGINNINGS = {
     "undula.app.sweeping.open_study": _begins,
     "undula.app.sweeping.load_study": _begins,
     "undula.app.diagrams.plot_study": _begins,
+    "undula.app.reproducing.jobs_of": _begins,
     "undula.studies.store.load_result": _begins,
 }
 

@@ -115,6 +115,11 @@ def test_the_commands_of_a_page_are_understood(
             assert status == 0, (line, capsys.readouterr().err)
 
 
+def test_every_command_is_on_the_first_page() -> None:
+    told = " ".join([*named(DOCS / "index.md"), *typed(DOCS / "index.md")])
+    assert set(COMMANDS) <= set(told.split())
+
+
 def is_abridged(words: Sequence[str]) -> bool:
     """Whether words only name a command, alone, with options, or with blanks to be filled in."""
     return all(word.startswith("-") for word in words[1:]) or any(map(BLANK.search, words))

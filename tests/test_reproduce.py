@@ -50,8 +50,8 @@ def test_everything_is_computed_judged_and_told(folder, capsys) -> None:
     assert not re.search(r'(src|href)="(https?:)?//', page)
     assert {path.name for path in (folder / "report" / "figures").iterdir()} == {
         "onset-onset.svg",
-        "study-diagram.png",
-        "study-run.png",
+        "study-diagram.pdf",
+        "study-run.pdf",
     }
 
 

@@ -16,7 +16,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from refusal import complaint
-from undula.app import report
+from undula.app import report_figures
 from undula.models.loads import LinearLoad, PowerLoad
 from undula.models.units import FILAMENT_UNITS, chain_units
 from undula.studies.claims import Answer
@@ -519,7 +519,7 @@ def test_a_view_is_given_stored_datasets_and_otherwise_plain_answers(
     monkeypatch.setitem(VIEWS, "seen", view)  # type: ignore[arg-type]
     shown = Shown(name="one", shows="", caption="", view="seen", of=["told", "stored"])
     wrapped = {name: Answer(answers[name], jobs[name].folder) for name in answers}
-    ending, content = report._content(shown, wrapped, jobs)
+    ending, content = report_figures._content(shown, wrapped, jobs)
     assert ending == ".svg"
     assert b"<svg" in content
     assert seen[0] == answers["told"]

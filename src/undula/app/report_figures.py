@@ -1,0 +1,146 @@
+"""Figures and movies of the report: pictures inside of the page, files beside it."""
+
+import base64
+import shutil
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from undula.app.answers import DONE
+from undula.app.catalogue_tasks import Job, answers_of, carry_out
+from undula.app.drawing import figure_bytes
+from undula.errors import InputError
+from undula.studies.claims import Answer
+from undula.studies.items import Figure, Item
+from undula.studies.steps_store import load_steps
+from undula.studies.store import load_result
+from undula.studies.study_store import load_study
+from undula.studies.whole_file import write_whole
+from undula.views import reproduced
+
+_KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
+#: What tasks store besides their answers, and who reads it.
+_STORED: Mapping[str, Callable[[Path], Any]] = {
+    "run.nc": load_result,
+    "steps.nc": load_steps,
+    "study.zarr": load_study,
+}
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A figure or movie with its place in the page.
+
+    Attributes
+    ----------
+    name, shows, caption
+        As in the catalogue.
+    source
+        The picture itself as a data URI, or the name of a file beside the page.
+    """
+
+    name: str
+    shows: str
+    caption: str
+    source: str
+
+
+def figures_of(name: str, item: Item, jobs: Mapping[str, Job]) -> list[Shown]:
+    """Return the figures of an item whose tasks are done.
+
+    Raises
+    ------
+    InputError
+        The file of a figure is gone.
+    """
+    answers = answers_of(item, name, jobs)
+    shown = []
+    for figure in _ready(item, answers):
+        suffix, content = _content(figure, answers, jobs)
+        source = f"data:{_KINDS[suffix]};base64,{base64.b64encode(content).decode()}"
+        shown.append(Shown(figure.name, figure.shows, figure.caption, source))
+    return shown
+
+
+def movies_of(out: Path, name: str, item: Item, jobs: Mapping[str, Job]) -> list[Shown]:
+    """Copy the movies of an item beside the page; return them."""
+    answers = answers_of(item, name, jobs)
+    shown = []
+    for movie in item.movies:
+        if not movie.asks <= answers.keys():
+            continue
+        place = out / "movies" / f"{name}-{next(iter(movie.asks))}.mp4"
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(_path(movie.file, answers), place)
+        relative = place.relative_to(out).as_posix()
+        shown.append(Shown(place.stem, movie.shows, movie.caption, relative))
+    return shown
+
+
+def write_vectors(folder: Path, name: str, item: Item, jobs: Mapping[str, Job]) -> None:
+    """Write the figures of an item as PDF, or as SVG where a command has drawn that.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written, or what a figure is drawn from is gone.
+    """
+    answers = answers_of(item, name, jobs)
+    for figure in _ready(item, answers):
+        path = folder / f"{name}-{figure.name}.pdf"
+        if figure.view is not None:
+            drawn = _drawn(figure, answers, jobs)
+            write_whole(path, figure_bytes(drawn, ".pdf"), overwrite=True)
+            continue
+        source = _path(figure.file or "", answers)
+        if source.suffix == ".svg":
+            write_whole(path.with_suffix(".svg"), source.read_bytes(), overwrite=True)
+            continue
+        outcome = carry_out(_drawing_again(source, path, jobs))
+        if outcome["status"] != DONE:
+            raise InputError(f"{path} cannot be drawn: {outcome['said']}")
+
+
+def _ready(item: Item, answers: Mapping[str, Answer]) -> Iterator[Figure]:
+    return (figure for figure in item.figures if figure.asks <= answers.keys())
+
+
+def _drawing_again(source: Path, path: Path, jobs: Mapping[str, Job]) -> tuple[str, ...]:
+    """Return the command that draws a figure of a run or a study again, into another file."""
+    if source.name == "run.png":
+        return ("plot", str(source.with_name("run.nc")), "--out", str(path), "--overwrite")
+    job = next(job for job in jobs.values() if job.folder == source.parent)
+    return tuple(str(path) if word == str(source) else word for word in job.command)
+
+
+def _content(
+    figure: Figure, answers: Mapping[str, Answer], jobs: Mapping[str, Job]
+) -> tuple[str, bytes]:
+    """Return the ending and the content of a figure's file."""
+    if figure.view is not None:
+        return ".svg", figure_bytes(_drawn(figure, answers, jobs), ".svg")
+    path = _path(figure.file or "", answers)
+    try:
+        return path.suffix, path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path} is gone; run the same command with --fresh") from error
+
+
+def _drawn(figure: Figure, answers: Mapping[str, Answer], jobs: Mapping[str, Job]) -> Any:
+    """Draw the view of a figure from what its tasks came to."""
+    view = reproduced.VIEWS[figure.view or ""]
+    return view(*(_outcome(answers[name], jobs) for name in figure.of))
+
+
+def _outcome(answer: Answer, jobs: Mapping[str, Job]) -> Any:
+    """Return the dataset that a task stored or, where it stored none, its plain JSON answer."""
+    for name, load in _STORED.items():
+        if answer.folder is not None and (answer.folder / name).exists():
+            return load(answer.folder / name)
+    records = (job.kept() for job in jobs.values() if job.folder == answer.folder)
+    return next(record["answer"] for record in records if record is not None)
+
+
+def _path(template: str, answers: Mapping[str, Answer]) -> Path:
+    return Path(template.format_map({name: answer.folder for name, answer in answers.items()}))
