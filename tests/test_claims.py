@@ -94,6 +94,7 @@ def test_curves_are_read_between_their_points() -> None:
 
 def test_the_slips_are_those_of_independent_formulas() -> None:
     assert slips.second_moment_over_area_squared() == pytest.approx(1.0 / (4.0 * np.pi))
+    assert slips.twist_over_bending(0.25) == pytest.approx(0.8)
     assert slips.springs_of_chain(5) == pytest.approx(5.0)
     assert slips.power_of_length_in_chain_time() == pytest.approx(2.0)
     assert slips.rank_of_angles_at_straight() == 1

@@ -9,16 +9,28 @@ import shutil
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from undula.app.answers import DONE
-from undula.compiled import package_digest
+from undula.compiled import PACKAGE
 from undula.errors import InputError
 from undula.studies.claims import Answer
 from undula.studies.items import Item, Task
 from undula.studies.whole_file import write_whole
 
+#: Sources that read answers and compute none: their changes leave all that is kept as it is.
+_JUDGING = (
+    "app/claim_rows",
+    "app/report",
+    "app/reproduc",
+    "studies/claims",
+    "studies/measures",
+    "studies/slips",
+    "studies/study_measures",
+    "views/reproduced",
+)
 #: File in the folder of a task that holds its answer.
 _ANSWER = "answer.json"
 
@@ -139,12 +151,23 @@ def _job(
     places |= {"out": str(folder), "inputs": _shown(inputs)}
     command = tuple(_filled(word, places) for word in shlex.split(template))
     read = [path for path in map(Path, command) if path.parent == Path(places["inputs"])]
-    digest = hashlib.sha256(package_digest().encode())
+    digest = hashlib.sha256(_computing().encode())
     parts = [template, *(path.read_text("utf-8") for path in read)]
     for part in (*parts, *(job.key for job in needed.values())):
         digest.update(b"\0" + part.encode())
     before = frozenset(job.folder for job in needed.values())
     return Job(item, name, task, command, folder, digest.hexdigest(), before, as_in_full)
+
+
+@cache
+def _computing() -> str:
+    """Return a digest of all sources but those that only judge and show what commands answer."""
+    digest = hashlib.sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        name = path.relative_to(PACKAGE).as_posix()
+        if not name.startswith(_JUDGING):
+            digest.update(name.encode() + path.read_bytes())
+    return digest.hexdigest()
 
 
 def _filled(word: str, places: Mapping[str, str]) -> str:

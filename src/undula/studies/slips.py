@@ -18,6 +18,7 @@ __all__ = [
     "rank_of_test_functions",
     "second_moment_over_area_squared",
     "springs_of_chain",
+    "twist_over_bending",
 ]
 
 #: Modes that are looked at; the fifth and later ones have hyperbolic functions beyond 1e6.
@@ -31,6 +32,16 @@ def second_moment_over_area_squared() -> float:
     moment, _ = quad(lambda y: y * y * 2.0 * np.sqrt(1.0 - y * y), -1.0, 1.0)
     area, _ = quad(lambda y: 2.0 * np.sqrt(1.0 - y * y), -1.0, 1.0)
     return float(moment / area**2)
+
+
+def twist_over_bending(poisson: float) -> float:
+    """Return the twist stiffness of a circular section over its bending stiffness.
+
+    They are G J and E I with J = 2 I, by integration, and the shear modulus G = E / (2 (1 + ν)).
+    """
+    moment, _ = quad(lambda y: y * y * 2.0 * np.sqrt(1.0 - y * y), -1.0, 1.0)
+    polar, _ = quad(lambda r: r * r * 2.0 * np.pi * r, 0.0, 1.0)
+    return float(polar / moment / (2.0 * (1.0 + poisson)))
 
 
 def springs_of_chain(links: int) -> float:
