@@ -20,9 +20,9 @@ def table() -> str:
     counts = Counter(row["verdict"] for row in rows)
     told = ", ".join(f"{count} {verdict}" for verdict, count in counts.most_common())
     parts = [f"{len(rows)} statements: {told}."]
-    for item in dict.fromkeys(row["item"] for row in rows):
+    for item, title in dict.fromkeys((row["item"], row["title"]) for row in rows):
         parts += [
-            f"\n## {item}\n\n`undula reproduce {item}`\n",
+            f"\n## {title}\n\n`undula reproduce {item}`\n",
             "| the paper | says | here | verdict |\n| --- | --- | --- | --- |",
             *(_line(row) for row in rows if row["item"] == item),
         ]

@@ -40,4 +40,4 @@ def test_every_row_is_a_line_of_the_page() -> None:
     headings = [line for line in lines if line.startswith(("| the paper", "| ---"))]
     assert len(lines) - len(headings) == len(ROWS)
     assert all(line.count(" | ") == 3 for line in lines)
-    assert all(f"## {item}" in text for item, _ in ROWS)
+    assert all(f"`undula reproduce {item}`" in text for item, _ in ROWS)

@@ -46,6 +46,7 @@ def row_of(
     places = {local: f"{name}/{local}" for local in item.tasks} | item.uses
     return {
         "item": name,
+        "title": item.title,
         "claim": claim.name,
         "says": claim.says,
         "where": claim.where,
