@@ -133,17 +133,23 @@ def test_a_task_that_fails_is_told_and_the_others_are_done(tmp_path, capsys, mon
 
 
 @pytest.mark.slow
-def test_a_killed_reproduction_goes_on(folder) -> None:
+@pytest.mark.parametrize(
+    ("ends_with", "status"), [(signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 3)]
+)
+def test_what_was_killed_or_interrupted_goes_on(folder, ends_with, status) -> None:
     command = [SCRIPTS / "undula", "reproduce", "--catalogue", "catalogue", "--workers", "1"]
+    # The first answer is that of the study, which uses all cores; the others are still to come.
     first = subprocess.Popen(command, start_new_session=True, stderr=subprocess.DEVNULL)
     end = time.monotonic() + PATIENCE
     while not list(folder.glob("report/data/*/*/answer.json")):
         assert time.monotonic() < end
         assert first.poll() is None
         time.sleep(0.02)
-    os.killpg(first.pid, signal.SIGKILL)
-    first.wait()
+    # As Ctrl-C in a terminal does, to all processes of the command.
+    os.killpg(first.pid, ends_with)
+    assert first.wait(timeout=PATIENCE) == status
     kept = {path: path.stat().st_mtime_ns for path in folder.glob("report/data/*/*/answer.json")}
+    assert len(kept) < 6
     done = subprocess.run([*command, "--json"], capture_output=True, timeout=PATIENCE, check=False)
     answer = json.loads(done.stdout)
     assert (done.returncode, answer["status"]) == (0, "done")

@@ -7,6 +7,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from undula.analysis.basins import basins
+from undula.analysis.regimes import UNDECIDED
 from undula.analysis.sweep_points import TRY, axes_of, verdicts_of
 from undula.arrays import Points
 from undula.studies.measures import FORCE
@@ -27,8 +28,9 @@ NEAR_ONSET = 0.05
 
 
 def verdicts(sweep: Any) -> str:
-    """Return the verdicts that occur in a study, in alphabetical order."""
-    return ", ".join(sorted(set(_verdicts(_study(sweep)).ravel().tolist())))
+    """Return the verdicts that occur in a study, those undecided apart, in alphabetical order."""
+    seen = set(_verdicts(_study(sweep)).ravel().tolist())
+    return ", ".join(sorted(seen - {UNDECIDED}))
 
 
 def found(sweep: Any, verdict: str) -> int:
