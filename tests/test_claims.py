@@ -13,7 +13,15 @@ from undula.models.filament import Filament
 from undula.studies import claims, slips
 from undula.studies.claims import Answer, judge
 from undula.studies.items import CATALOGUE, Claim, catalogue, paper_of
-from undula.studies.measures import at, crossing, first_present, holding, peak
+from undula.studies.measures import (
+    at,
+    crossing,
+    first_present,
+    holding,
+    holding_error,
+    peak,
+    peak_error,
+)
 
 ITEMS = catalogue()
 ROWS = [(name, claim) for name, item in ITEMS.items() for claim in item.claims]
@@ -89,6 +97,8 @@ def test_curves_are_read_between_their_points() -> None:
     assert crossing(places, places - 1.25) == pytest.approx(1.25)
     assert peak(places, 3.0 - (places - 1.7) ** 2) == pytest.approx(1.7)
     assert holding(places, 1.0 - (places - 2.0) ** 2, 2.0) == pytest.approx([1.0, 3.0])
+    assert max(holding_error(places, 1.0 - (places - 2.0) ** 2, 2.0)) < 0.1
+    assert peak_error(places, 3.0 - (places - 1.7) ** 2) < 1e-9
     assert first_present(places, np.where(places < 2.1, np.nan, 1.0)) == [2.25, 0.25]
 
 
@@ -116,6 +126,12 @@ def test_a_claim_is_computed_from_tasks(name: str, told: Claim) -> None:
     bound = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
     assert told.asks - bound <= known | claims._WORDS.keys()
     assert told.asks & (known | set(slips.__all__))
+
+
+@pytest.mark.parametrize(("name", "told"), ROWS, ids=[f"{name}-{c.name}" for name, c in ROWS])
+def test_a_number_has_an_error(name: str, told: Claim) -> None:
+    numbers = isinstance(told.published, list) or type(told.published) is float
+    assert (told.error is not None) == (numbers or told.over is not None), name
 
 
 def test_a_wrong_published_value_changes_the_verdict(tmp_path: Path) -> None:

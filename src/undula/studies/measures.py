@@ -3,10 +3,12 @@
 Curves are points in any order; a claim on a range asks where a condition holds without a gap.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
 
 from undula.arrays import Points
 
@@ -18,12 +20,15 @@ __all__ = [
     "forces",
     "gaining",
     "holding",
+    "holding_error",
     "largest_spread",
     "minimum",
     "missing",
     "on",
     "peak",
+    "peak_error",
     "regimes",
+    "roundoff",
     "slowness",
     "spinning_energy",
 ]
@@ -71,19 +76,18 @@ def holding(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
     ValueError
         It does not hold there.
     """
+    return _range(*_sorted(of, condition), around, _zero)
+
+
+def holding_error(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
+    """Return the errors of the ends: what a straight line between points would make of them."""
     places, margin = _sorted(of, condition)
-    inside = int(np.abs(places - around).argmin())
-    if not margin[inside] > 0.0:
-        raise ValueError(f"it does not hold at {around:g}")
-    failing = np.flatnonzero(~(margin > 0.0))
-    before, after = failing[failing < inside], failing[failing > inside]
-    low = _zero(places, margin, int(before[-1])) if len(before) else float(places[0])
-    high = _zero(places, margin, int(after[0]) - 1) if len(after) else float(places[-1])
-    return [low, high]
+    smooth, straight = (_range(places, margin, around, zero) for zero in (_zero, _straight_zero))
+    return [abs(one - other) for one, other in zip(smooth, straight, strict=True)]
 
 
 def crossing(of: ArrayLike, values: ArrayLike) -> float:
-    """Return the first place at which a curve, straight between its points, passes through zero.
+    """Return the first place at which a curve passes through zero.
 
     Raises
     ------
@@ -111,9 +115,18 @@ def peak(of: ArrayLike, values: ArrayLike) -> float:
     if not len(tops):
         raise ValueError("the values have no maximum inside")
     top = int(tops[0])
-    near = slice(top - 1, top + 2)
-    _, slope, bend = _parabola(places[near] - places[top], known[near])
-    return float(places[top] - slope / (2.0 * bend))
+    flat = CubicSpline(places, known).derivative().roots(extrapolate=False)
+    return float(flat[np.abs(flat - places[top]).argmin()])
+
+
+def peak_error(of: ArrayLike, values: ArrayLike) -> float:
+    """Return the error of that place: what a parabola through the three greatest makes of it."""
+    places, known = _sorted(of, values)
+    found = peak(places, known)
+    middle = int(np.clip(np.abs(places - found).argmin(), 1, len(places) - 2))
+    near = slice(middle - 1, middle + 2)
+    _, slope, bend = _parabola(places[near] - found, known[near])
+    return float(abs(slope / (2.0 * bend)))
 
 
 def minimum(first: ArrayLike, second: ArrayLike) -> Points:
@@ -165,6 +178,11 @@ def spinning_energy(branch: Any, *, above: float = 0.0) -> Points:
     return every[np.asarray(branch.points[FORCE], dtype=float) > above]
 
 
+def roundoff(value: float) -> float:
+    """Return the round-off of a value that took a few operations."""
+    return float(4.0 * np.finfo(float).eps * abs(value))
+
+
 def slowness(spinning: Any, flapping: Any) -> Points:
     """Return 1 - flapping/spinning of the frequencies, at the points of the branch of flapping."""
     fast = on(forces(flapping), spinning.points[FORCE], spinning.points.frequency)
@@ -191,7 +209,29 @@ def _parabola(places: Points, values: Points) -> Points:
     return np.asarray(np.linalg.solve(matrix, values))
 
 
+def _range(
+    places: Points, margin: Points, around: float, zero: Callable[[Points, Points, int], float]
+) -> list[float]:
+    inside = int(np.abs(places - around).argmin())
+    if not margin[inside] > 0.0:
+        raise ValueError(f"it does not hold at {around:g}")
+    failing = np.flatnonzero(~(margin > 0.0))
+    before, after = failing[failing < inside], failing[failing > inside]
+    low = zero(places, margin, int(before[-1])) if len(before) else float(places[0])
+    high = zero(places, margin, int(after[0]) - 1) if len(after) else float(places[-1])
+    return [low, high]
+
+
 def _zero(places: Points, values: Points, left: int) -> float:
+    """Return where a smooth curve passes through zero right of a point."""
+    if not np.isfinite(values).all():
+        return _straight_zero(places, values, left)
+    roots = CubicSpline(places, values).roots(extrapolate=False)
+    here = roots[(roots >= places[left]) & (roots <= places[left + 1])]
+    return float(here[0])
+
+
+def _straight_zero(places: Points, values: Points, left: int) -> float:
     a, b = values[left], values[left + 1]
     return float(places[left] - a * (places[left + 1] - places[left]) / (b - a))
 

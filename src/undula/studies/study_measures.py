@@ -19,6 +19,7 @@ __all__ = [
     "least_excess",
     "least_share",
     "onset_contradictions",
+    "share_error",
     "verdicts",
 ]
 
@@ -40,12 +41,25 @@ def found(sweep: Any, verdict: str) -> int:
 
 def least_share(sweep: Any, verdict: str, low: float, high: float) -> float:
     """Return the least share of tries with a verdict, over the forces between two."""
+    return _least_share(sweep, verdict, low, high)[0]
+
+
+def share_error(sweep: Any, verdict: str, low: float, high: float) -> float:
+    """Return half of the 95 per cent interval of the least share."""
+    _, least, most = _least_share(sweep, verdict, low, high)
+    return (most - least) / 2.0
+
+
+def _least_share(sweep: Any, verdict: str, low: float, high: float) -> tuple[float, float, float]:
+    """Return the least share with the ends of its interval; noughts for one that never occurs."""
     store = _study(sweep)
-    shares = basins(store)["fraction"]
+    shares = basins(store)
     inside = (store[FORCE].values > low) & (store[FORCE].values < high)
     if verdict not in shares["verdict"].values:
-        return 0.0
-    return float(shares.sel(verdict=verdict).values[inside].min())
+        return 0.0, 0.0, 0.0
+    chosen = shares.sel(verdict=verdict).isel({FORCE: inside})
+    least = int(np.argmin(chosen["fraction"].values))
+    return tuple(float(chosen[name][least]) for name in ("fraction", "low", "high"))  # type: ignore[return-value]
 
 
 def least_excess(sweep: Any, growth: Any) -> float:
