@@ -216,13 +216,13 @@ class Simulation:
         return found
 
     def checkpoint(self) -> dict[str, Array]:
-        """Return all that `resume` needs, as arrays."""
+        """Return all that `resume` needs, as arrays that stay as they are when the run goes on."""
         saved: dict[str, Any] = {"states": self.states, "interval": np.float64(self.interval)}
         saved["shown_until"] = np.float64(self.shown_until)
         saved |= {f"watch_{name}": array for name, array in self.watch.to_arrays().items()}
         for prefix, memory in (("memory", self.memory), ("mark", self.marks[0])):
             for name, array in memory._asdict().items():
-                saved[f"{prefix}_{name}"] = array
+                saved[f"{prefix}_{name}"] = np.array(array)
         return saved
 
     @classmethod
