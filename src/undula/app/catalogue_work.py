@@ -10,6 +10,8 @@ from undula.app.pool import DiedError
 
 #: Keys of an input that choose other compiled code.
 _CODE = ("model.kind", "model.confined", "model.twist", "model.inextensibility", "model.spring")
+#: Commands that share the kernels of states.
+_SOLVING = ("find", "follow", "threshold")
 
 
 class TaskWork:
@@ -90,5 +92,7 @@ class TaskWork:
 
 def _kind(job: Job) -> frozenset[str]:
     """Return what of a command tells which kernels it needs, as far as that matters."""
+    verb = "solve" if job.command[0] in _SOLVING else job.command[0]
     chosen = (word for word in job.command if word.startswith(_CODE))
-    return frozenset((*job.command[:1], *chosen, *{"--lyapunov", "flapping"} & {*job.command}))
+    flaps = {"flapping"} if any(word.startswith("flapping") for word in job.command) else set()
+    return frozenset((verb, *chosen, *flaps, *{"--lyapunov"} & {*job.command}))
