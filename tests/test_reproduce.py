@@ -59,8 +59,11 @@ def test_the_command_of_a_row_gives_its_value(folder, capsys) -> None:
     _, answer = reproduce(capsys, folder, "onset", "--workers", "1")
     again = reproduce(capsys, folder, "onset", "--workers", "1", "--fresh")[1]
     assert again["claims"] == answer["claims"]
-    assert main([*answer["claims"][0]["steps"][0].split()[1:], "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["hopf_force"] == answer["claims"][0]["value"]
+    row = answer["claims"][0]
+    assert main([*row["steps"][0].split()[1:], "--json"]) == 0
+    # To the error that the row states: round-off depends on where the arrays lie in memory.
+    value = json.loads(capsys.readouterr().out)["hopf_force"]
+    assert abs(value - row["value"]) <= row["error"] < 1e-9
 
 
 def test_a_quick_report_leaves_out_what_needs_the_full_one(folder, capsys) -> None:

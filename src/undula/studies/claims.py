@@ -20,11 +20,7 @@ from undula.studies.items import (
 _ROOMS = (measures, study_measures, slips)
 #: What expressions may use besides the answers.
 _WORDS: Mapping[str, Any] = {
-    **{
-        name: getattr(room, name)
-        for room in (measures, slips, study_measures)
-        for name in room.__all__
-    },
+    **{name: getattr(room, name) for room in _ROOMS for name in room.__all__},
     **{word.__name__: word for word in (abs, all, any, float, len, max, min, round, sorted, sum)},
     "log": np.log,
     "pi": np.pi,
@@ -166,7 +162,8 @@ def _close(value: Any, published: Any, within: float) -> bool:
 
 
 def _evaluate(claim: Claim, text: str, answers: Mapping[str, Answer]) -> Any:
-    # The catalogue is a part of this package: its expressions are trusted as its code is.
+    # A catalogue is trusted like code. That built-in words are missing here catches slips of the
+    # pen; it does not make a stranger's file safe.
     try:
         return eval(text.strip(), {"__builtins__": {}, **_WORDS, **answers})
     except (NameError, SyntaxError) as error:
