@@ -14,7 +14,7 @@ from refusal import complaint
 from undula.arrays import Array, Points
 from undula.models.filament import Filament
 from undula.models.loads import Load
-from undula.numerics.banded import factor_kernel, solve_kernel, to_dense
+from undula.numerics.banded import factor_kernel, full, solve_kernel, to_dense
 from undula.numerics.system import RATES
 
 TWISTS = ["paper", "rigid", "elastic"]
@@ -317,9 +317,9 @@ def test_the_matrix_needs_no_pivoting(twist: Any) -> None:
         band[moves] += c * stiff[moves]
         band[~moves] = stiff[~moves]
         right, dense = to_dense(band) @ wanted, to_dense(band)
-        assert factor_kernel(18)(band)
+        assert factor_kernel(full(18))(band)
         found = right.copy()
-        solve_kernel(18)(band, found)
+        solve_kernel(full(18))(band, found)
         with_pivots = np.abs(np.linalg.solve(dense, right) - wanted).max()
         # Ten times what a method with pivots leaves, and round-off where that has luck.
         assert np.abs(found - wanted).max() < 30.0 * with_pivots + 1e-10

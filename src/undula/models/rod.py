@@ -20,6 +20,7 @@ Source: the discrete Kirchhoff rod of Ling, Guo & Kanso (2018), with half-cell e
 from typing import ClassVar, NamedTuple
 
 from undula.arrays import Array, Links
+from undula.numerics.banded import Structure
 
 
 class Tables(NamedTuple):
@@ -38,6 +39,20 @@ class Tables(NamedTuple):
     tensile: float  # EA; infinite for rigid links
 
 
+def gentle_structure(dimension: int) -> Structure:
+    """Return where the matrix of `undula.models.rod_matrix` for rigid links has entries.
+
+    From the tip on, a link after its outer node, is the order that fills in least.
+    """
+    nodes, link = range(dimension), dimension
+    whole = {(a, shift, b) for a in nodes for b in nodes for shift in (-1, 0, 1)}
+    scalar = {(a, shift, a) for a in nodes for shift in (-2, 2)}
+    tensions = {(a, shift, link) for a in nodes for shift in (-1, 0)}
+    lengths = {(link, shift, a) for a in nodes for shift in (0, 1)}
+    entries = frozenset(whole | scalar | tensions | lengths | {(link, 0, link)})
+    return Structure(2 * dimension + 2, dimension + 1, entries, backwards=True)
+
+
 class SpatialRod(Tables):
     """Rigid links in space."""
 
@@ -45,6 +60,7 @@ class SpatialRod(Tables):
     stride: ClassVar = 4
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 8
+    structure: ClassVar = gentle_structure(3)
     derivative_half_bandwidth: ClassVar = 11
 
 
@@ -55,6 +71,7 @@ class PlanarRod(Tables):
     stride: ClassVar = 3
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 6
+    structure: ClassVar = gentle_structure(2)
     derivative_half_bandwidth: ClassVar = 8
 
 

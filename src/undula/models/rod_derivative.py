@@ -3,9 +3,9 @@
 With t = e / |e| for extensible links, dt = (I - t t) de / l and dl = t . de; for rigid ones dt = de
 / h and l does not change. The derivative with respect to link k of the force q_i along link i is
 
-    dq_i/dt_{i-1} = (G_i - G'_i d_i t_i) / l_i                 d_i = t_i - t_{i-1}
-    dq_i/dt_{i+1} = (G_{i+1} + G'_{i+1} d_{i+1} t_i) / l_i     G = K g(c),  G' = K dg/dc
-    dq_i/dt_i = (-G_i - G_{i+1} - G'_i d_i t_{i-1} + G'_{i+1} d_{i+1} t_{i+1}) / l_i - T_i
+    dq_i/dt_{i-1} = H_i / l_i,    dq_i/dt_{i+1} = H_{i+1} / l_i,
+    dq_i/dt_i = -(H_i + H_{i+1}) / l_i - T_i,
+    H_i = G_i - G'_i d_i d_i,    d_i = t_i - t_{i-1},    G = K g(c),  G' = K dg/dc
     dq_i/dl_i = -(a_{i+1} - a_i) / l_i^2.
 """
 
@@ -70,15 +70,14 @@ def link_blocks_kernel(rod: Any) -> Callable[..., Any]:
             bend, slope = system.joint[i] * stiffening(c), system.joint[i] * stiffening_slope(c)
             previous = t[i - 1] if i > 0 else clamp
             for a in range(d):
-                step = t[i, a] - previous[a]
                 for b in range(d):
-                    same = bend if a == b else 0.0
-                    outer, inner = slope * step * previous[b], slope * step * t[i, b]
-                    blocks[i, 0, a, b] += (same - inner) / length[i]
-                    blocks[i, 1, a, b] -= (same + outer) / length[i]
+                    rate = -slope * (t[i, a] - previous[a]) * (t[i, b] - previous[b])
+                    rate += bend if a == b else 0.0
+                    blocks[i, 0, a, b] += rate / length[i]
+                    blocks[i, 1, a, b] -= rate / length[i]
                     if i > 0:
-                        blocks[i - 1, 1, a, b] += (inner - same) / length[i - 1]
-                        blocks[i - 1, 2, a, b] += (same + outer) / length[i - 1]
+                        blocks[i - 1, 1, a, b] -= rate / length[i - 1]
+                        blocks[i - 1, 2, a, b] += rate / length[i - 1]
         for i in range(n):
             for a in range(d):
                 blocks[i, 1, a, a] -= y[m * i + d]

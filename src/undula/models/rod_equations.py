@@ -10,6 +10,7 @@ import numpy as np
 from undula.compiled import kernel
 from undula.models.joint import stiffening
 from undula.models.rod import OTHER_JOINTS, RODS, FramedRod
+from undula.models.vectors import vectors
 from undula.numerics.system import (
     constraint_error,
     generator,
@@ -51,42 +52,61 @@ def tangents_kernel(rod: Any) -> Callable[..., Any]:
 
 @cache
 def cosine_kernel(dimension: int) -> Callable[..., Any]:
-    """Return `cosine(t, i)`: t_{i-1} . t_i, with the clamp's e_z before the first link."""
+    """Return `cosine(t, i)`: t_{i-1} . t_i, with the clamp's e_z before the first link.
+
+    Taken from the chord, 1 - |t_i - t_{i-1}|^2 / 2, which is the same for unit vectors. Those that
+    Newton's method has not brought to unit length yet then change it by the square of the joint's
+    angle only, so that the matrix without the slope of g is good from its first correction on.
+    """
     d = dimension
 
     @kernel
     def cosine(t: Any, i: Any) -> Any:
-        if i == 0:
-            return t[0, d - 1]
-        total = 0.0
+        square = 0.0
         for a in range(d):
-            total += t[i - 1, a] * t[i, a]
-        return total
+            previous = t[i - 1, a] if i > 0 else (1.0 if a == d - 1 else 0.0)
+            square += (t[i, a] - previous) * (t[i, a] - previous)
+        return 1.0 - 0.5 * square
 
     return cosine
 
 
 @cache
-def moments_kernel(dimension: int) -> Callable[..., Any]:
-    """Return `moments(system, t, moment, shortfall)`: a (N + 1, d) and K g (1 - c) (N + 1,)."""
-    d = dimension
-    cosine = cosine_kernel(d)
+def link_kernel(rod: Any) -> Callable[..., Any]:
+    """Return `link(system, e)`: tangent and length of a link with ends e apart."""
+    times, dot, extensible = (
+        vectors(rod.dimension).times,
+        vectors(rod.dimension).dot,
+        rod.extensible,
+    )
 
     @kernel
-    def moments(system: Any, t: Any, moment: Any, shortfall: Any) -> None:
-        n = t.shape[0]
-        for i in range(n):
-            c = cosine(t, i)
-            bend = system.joint[i] * stiffening(c)
-            shortfall[i] = bend * (1.0 - c)
-            for a in range(d):
-                previous = t[i - 1, a] if i > 0 else (1.0 if a == d - 1 else 0.0)
-                moment[i, a] = bend * (t[i, a] - previous)
-        shortfall[n] = 0.0
-        for a in range(d):
-            moment[n, a] = 0.0
+    def link(system: Any, e: Any) -> Any:
+        if extensible:
+            length = math.sqrt(dot(e, e))
+            return times(1.0 / length, e), length
+        return times(1.0 / system.link, e), system.link
 
-    return moments
+    return link
+
+
+@cache
+def moment_kernel(dimension: int) -> Callable[..., Any]:
+    """Return `moment(system, t, u, i)`: a and K g (1 - c) of the joint from t to u before link i.
+
+    c is `cosine_kernel`'s, from the chord.
+    """
+    v = vectors(dimension)
+    minus, times, dot = v.minus, v.times, v.dot
+
+    @kernel
+    def moment(system: Any, t: Any, u: Any, i: Any) -> Any:
+        step = minus(u, t)
+        chord = 0.5 * dot(step, step)
+        bend = system.joint[i] * stiffening(1.0 - chord)
+        return times(bend, step), bend * chord
+
+    return moment
 
 
 @cache
@@ -133,27 +153,30 @@ def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
 def rates_kernel(rod: Any) -> Any:
     """Return `rates(system, y, v, out)` for loads along the links, see `undula.numerics.system`."""
     d, m = rod.dimension, rod.stride
-    tangents, along = tangents_kernel(rod), along_kernel(rod)
+    read, _, plus, minus, _, dot, _ = vectors(d)
+    link, nothing = link_kernel(rod), (0.0,) * d
 
     @kernel
     def rod_rates(system: Any, y: Any, v: Any, out: Any) -> None:
         n = system.joint.shape[0]
-        t, length = np.empty((n, d)), np.empty(n)
-        tangents(system, y, t, length)
+        node, before = read(y, 0), nothing
+        t, _ = link(system, node)
         spin = inertia = power = dissipation = 0.0
         for i in range(n):
-            k = m * i
+            k, moved = m * i, read(v, m * i)
+            outer, u, s = node, t, t
+            if i + 1 < n:
+                outer = read(y, k + m)
+                u, _ = link(system, minus(outer, node))
+                s = plus(t, u)
             if d == 3:
                 spin += y[k] * v[k + 1] - y[k + 1] * v[k]
                 inertia += y[k] * y[k] + y[k + 1] * y[k + 1]
-            lagging = system.lag * along(t, v, i)
-            for a in range(d):
-                direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
-                drag = system.weight[i] * (v[k + a] - lagging * direction)
-                dissipation += v[k + a] * drag
-                power -= system.head[i] * t[i, a] * v[k + a]
-                if i > 0:
-                    power -= system.foot[i] * t[i, a] * v[k - m + a]
+            along = dot(s, moved)
+            slower = system.lag * along * along / dot(s, s)
+            dissipation += system.weight[i] * (dot(moved, moved) - slower)
+            power -= system.head[i] * dot(t, moved) + system.foot[i] * dot(t, before)
+            node, t, before = outer, u, moved
         out[0] = spin / inertia if inertia > 0.0 else 0.0
         out[1] = power
         out[2] = dissipation
@@ -163,31 +186,40 @@ def rates_kernel(rod: Any) -> Any:
 
 def _register_forces(rod: Any) -> None:
     d, m, extensible = rod.dimension, rod.stride, rod.extensible
-    tangents, moments, along = tangents_kernel(rod), moments_kernel(d), along_kernel(rod)
+    read, write, plus, minus, times, dot, axis = vectors(d)
+    link, moment, nothing = link_kernel(rod), moment_kernel(d), (0.0,) * d
 
     @implements(residual, rod)
     def rod_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
         n = system.joint.shape[0]
-        t, length = np.empty((n, d)), np.empty(n)
-        moment, shortfall = np.empty((n + 1, d)), np.empty(n + 1)
-        tangents(system, y, t, length)
-        moments(system, t, moment, shortfall)
+        node = read(y, 0)
+        t, length = link(system, node)
+        a, shortfall = moment(system, axis, t, 0)
+        row = nothing  # what node i - 1 has but for the force of the link to node i
         for i in range(n):
-            multiplier, lagging = y[m * i + d], system.lag * along(t, w, i)
-            square = 0.0
-            for a in range(d):
-                force = (moment[i + 1, a] - moment[i, a]) / length[i] - multiplier * t[i, a]
-                if i > 0:
-                    out[m * (i - 1) + a] += c * (force + system.foot[i] * t[i, a])
-                direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
-                drag = system.weight[i] * (w[m * i + a] - lagging * direction)
-                out[m * i + a] = drag - c * (force - system.head[i] * t[i, a])
-                square += t[i, a] * t[i, a]
+            k, last = m * i, i + 1 == n
+            outer, u, outer_length, s = node, t, length, t
+            b, outer_shortfall = nothing, 0.0
+            if not last:
+                outer = read(y, k + m)
+                u, outer_length = link(system, minus(outer, node))
+                b, outer_shortfall = moment(system, t, u, i + 1)
+                s = plus(t, u)
+            multiplier = y[k + d]
+            force = minus(times(1.0 / length, minus(b, a)), times(multiplier, t))
+            if i > 0:
+                write(out, k - m, plus(row, times(c, plus(force, times(system.foot[i], t)))))
+            moved = read(w, k)
+            lagging = times(system.lag * dot(s, moved) / dot(s, s), s)
+            drag = times(system.weight[i], minus(moved, lagging))
+            row = minus(drag, times(c, minus(force, times(system.head[i], t))))
             if extensible:
-                tension = multiplier + (shortfall[i] + shortfall[i + 1]) / length[i]
-                out[m * i + d] = length[i] / system.link - 1.0 - tension / system.tensile
+                tension = multiplier + (shortfall + outer_shortfall) / length
+                out[k + d] = length / system.link - 1.0 - tension / system.tensile
             else:
-                out[m * i + d] = 0.5 * (square - 1.0)
+                out[k + d] = 0.5 * (dot(t, t) - 1.0)
+            node, t, length, a, shortfall = outer, u, outer_length, b, outer_shortfall
+        write(out, m * (n - 1), row)
 
     if not extensible:
 

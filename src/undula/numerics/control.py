@@ -35,21 +35,25 @@ ENGAGE_BELOW, RELEASE_ABOVE, VOTES = 0.3, 0.8, 10
 def rescale(differences: Any, order: Any, ratio: Any) -> None:
     """Turn backward differences up to `order` for a step h into those for ratio * h, in place.
 
-    The interpolating polynomial stays the same. Source: Shampine & Reichelt (1997), section 2.3.
+    The interpolating polynomial stays the same: with the backward shift 1 - D over h, the new
+    differences are powers of 1 - (1 - D)^ratio, a series in D. For polynomials it is finite.
     """
-    change, unit = np.zeros((order + 1, order + 1)), np.zeros((order + 1, order + 1))
-    for k in range(order + 1):
-        change[0, k] = unit[0, k] = 1.0
-        for j in range(1, order + 1):
-            change[j, k] = change[j - 1, k] * (j - 1 - ratio * k) / j
-            unit[j, k] = unit[j - 1, k] * (j - 1 - k) / j
-    product = change @ unit
-    for k in range(1, order + 1):  # row k of the new differences needs rows k and higher only
-        for i in range(differences.shape[1]):
-            differences[k, i] *= product[k, k]
+    shift, power = np.zeros(order + 1), np.zeros(order + 1)
+    binomial, power[0] = 1.0, 1.0
+    for j in range(1, order + 1):
+        binomial *= (j - 1 - ratio) / j
+        shift[j] = -binomial
+    for k in range(1, order + 1):
+        for j in range(order, -1, -1):  # power times shift, from the highest term down
+            term = 0.0
+            for i in range(1, j + 1):
+                term += shift[i] * power[j - i]
+            power[j] = term
+        for i in range(differences.shape[1]):  # needs rows k and higher only
+            differences[k, i] *= power[k]
         for j in range(k + 1, order + 1):
             for i in range(differences.shape[1]):
-                differences[k, i] += product[j, k] * differences[j, i]
+                differences[k, i] += power[j] * differences[j, i]
 
 
 @kernel

@@ -44,9 +44,9 @@ from undula.numerics.stepping import (
     correct,
     integrate_rates,
     predict,
-    workspace,
 )
 from undula.numerics.system import generator, size
+from undula.numerics.workspace import workspace
 
 _DONE, _PAUSED = Status.DONE.value, Status.PAUSED.value
 _TOO_SHORT, _NOT_FINITE = Status.STEP_TOO_SHORT.value, Status.NOT_FINITE.value
@@ -99,7 +99,7 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
 def step_error(system: Any, memory: Any, options: Any, work: Any) -> Any:
     """Return the estimated error of the step's positions, in the frame with that of its angle."""
     n = work.y.shape[0]
-    error = size(system, work.change[:n], options.mask)
+    error = size(system, work.change, options.mask)
     if memory.count[IN_FRAME] == 1:
         lever = size(system, work.turning, options.mask)
         error = math.hypot(error, lever * work.change[n])

@@ -78,19 +78,6 @@ class Options(NamedTuple):
     error: np.ndarray
 
 
-class Work(NamedTuple):
-    """Scratch of a step, so that a step allocates nothing."""
-
-    predicted: np.ndarray  # (n + RATES,)
-    psi: np.ndarray  # (n + RATES,) w = y - predicted + psi
-    change: np.ndarray  # (n + RATES,) y - predicted
-    y: np.ndarray  # (n,)
-    w: np.ndarray
-    turning: np.ndarray  # S y
-    phase: np.ndarray  # S psi: a step without rotation in the frame has <S psi, y> = 0
-    correction: np.ndarray
-
-
 def options(
     scheme: BackwardDifferentiation,
     mask: np.ndarray,
@@ -110,22 +97,6 @@ def options(
 
 
 @kernel
-def workspace(n: Any) -> Any:
-    """Return the scratch of a stepper of n unknowns."""
-    m = n + RATES
-    return Work(
-        np.zeros(m),
-        np.zeros(m),
-        np.zeros(m),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-    )
-
-
-@kernel
 def dot(a: Any, b: Any, mask: Any) -> Any:
     """Return the scalar product of a and b over the positions."""
     total = 0.0
@@ -140,16 +111,25 @@ def predict(system: Any, memory: Any, options: Any, work: Any) -> Any:
     order, n = memory.count[ORDER], work.y.shape[0]
     differences = memory.differences
     inverse = 1.0 / options.alpha[order]
+    first = options.gamma[1] * inverse
     for i in range(differences.shape[1]):
-        work.predicted[i], work.psi[i] = differences[0, i], 0.0
-    for j in range(1, order + 1):  # two loops, as one over both arrays is not vectorised
-        factor = options.gamma[j] * inverse
+        work.predicted[i] = differences[0, i] + differences[1, i]
+    for i in range(differences.shape[1]):  # loops over both arrays would not be vectorised
+        work.psi[i] = first * differences[1, i]
+    for j in range(2, order, 2):  # two differences at a time: memory is what it waits for
+        factor, next_factor = options.gamma[j] * inverse, options.gamma[j + 1] * inverse
         for i in range(differences.shape[1]):
-            work.predicted[i] += differences[j, i]
+            work.predicted[i] += differences[j, i] + differences[j + 1, i]
         for i in range(differences.shape[1]):
-            work.psi[i] += factor * differences[j, i]
-    work.y[:] = work.predicted[:n]
+            work.psi[i] += factor * differences[j, i] + next_factor * differences[j + 1, i]
+    if order % 2 == 0:
+        factor = options.gamma[order] * inverse
+        for i in range(differences.shape[1]):
+            work.predicted[i] += differences[order, i]
+        for i in range(differences.shape[1]):
+            work.psi[i] += factor * differences[order, i]
     for i in range(n):
+        work.y[i] = work.predicted[i]
         work.w[i] = work.y[i] - options.reference[i]
     scale = options.atol + options.rtol * size(system, work.w, options.mask)
     return memory.real[STEP] * inverse, scale
@@ -193,7 +173,8 @@ def refactor(system: Any, memory: Any, work: Any, c: Any, turn: Any) -> Any:
     """Make and factor the Newton matrix at the state in `work`; False where it is singular."""
     in_frame = memory.count[IN_FRAME] == 1
     matrix(system, work.y, work.w, c, turn if in_frame else 0.0, memory.factors)
-    memory.factored_at[:] = work.y
+    for i in range(work.y.shape[0]):
+        memory.factored_at[i] = work.y[i]
     memory.real[FACTORED_C] = c
     memory.real[FACTORED_ANGLE] = work.predicted[work.y.shape[0]]
     memory.count[FACTORISATIONS] += 1
@@ -244,7 +225,8 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
             work.y[i] = work.predicted[i] - work.psi[i]
         generator(system, work.y, work.phase)
     for attempt in range(2):
-        work.change[:] = 0.0
+        for i in range(work.change.shape[0]):
+            work.change[i] = 0.0
         turn = work.psi[n] if in_frame else 0.0  # extrapolates the rate
         spread(system, work, in_frame, turn)
         angle = 0.0 if in_frame else work.predicted[n] - memory.real[FACTORED_ANGLE]
@@ -292,6 +274,6 @@ def integrate_rates(system: Any, work: Any, c: Any) -> None:
     n, inverse = work.y.shape[0], 1.0 / c
     for i in range(n):
         work.correction[i] = work.w[i] * inverse
-    rates(system, work.y, work.correction, work.change[n:])
-    for i in range(n, n + RATES):
-        work.change[i] = c * work.change[i] - work.psi[i]
+    rates(system, work.y, work.correction, work.rates)
+    for i in range(RATES):
+        work.change[n + i] = c * work.rates[i] - work.psi[n + i]

@@ -65,7 +65,10 @@ def residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> Any:
 
 @generic
 def matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any:
-    """Write d residual / dy, with dw = (1 + turn S) dy, to band (n, 2 b + 1), for Newton."""
+    """Write d residual / dy, with dw = (1 + turn S) dy, to band (n, 2 b + 1), for Newton.
+
+    The band begins with the last block where the type's `structure` is stored backwards.
+    """
     raise TypeError("this system has no matrix: register one with implements(matrix, ...)")
 
 
@@ -86,9 +89,10 @@ def weigh(system: Any, y: Any, u: Any, out: Any) -> Any:
 
 @generic
 def size(system: Any, vector: Any, mask: Any) -> Any:
-    """Return the size of a change of the unknowns (n,), a root mean square over positions (mask 1).
+    """Return the size of a change of the unknowns, a root mean square over positions (mask 1).
 
-    Errors are measured by it, so it must not change when the system turns.
+    Errors are measured by it, so it must not change when the system turns. The vector may have more
+    entries behind the unknowns, which do not count.
     """
     total, weight = 0.0, 0.0
     for i in range(mask.shape[0]):
@@ -121,6 +125,12 @@ def rotate(system: Any, y: Any, angle: Any, out: Any) -> Any:
     out[:] = y
 
 
+def structure_of(system: type) -> banded.Structure:
+    """Return where `matrix` has entries: the attribute `structure` of a type, or all its band."""
+    half: int = system.half_bandwidth  # type: ignore[attr-defined]
+    return getattr(system, "structure", banded.full(half))
+
+
 def derivative_half_bandwidth(system: type) -> int:
     """Return the half-bandwidth of what `derivative` writes for systems of a type."""
     own: int = system.half_bandwidth  # type: ignore[attr-defined]
@@ -145,23 +155,23 @@ def solve(system: Any, band: Any, x: Any) -> Any:
 
 @overload(factor, strict=False, jit_options=RESOLVED)
 def _factor(system: Any, band: Any) -> Any:
-    kernel = banded.factor_kernel(system.instance_class.half_bandwidth)
+    kernel = banded.factor_kernel(structure_of(system.instance_class))
     return lambda system, band: kernel(band)  # noqa: ARG005
 
 
 @overload(solve, strict=False, jit_options=RESOLVED)
 def _solve(system: Any, band: Any, x: Any) -> Any:
-    kernel = banded.solve_kernel(system.instance_class.half_bandwidth)
+    kernel = banded.solve_kernel(structure_of(system.instance_class))
     return lambda system, band, x: kernel(band, x)  # noqa: ARG005
 
 
 @overload(factor_derivative, strict=False, jit_options=RESOLVED)
 def _factor_derivative(system: Any, band: Any) -> Any:
-    kernel = banded.factor_kernel(derivative_half_bandwidth(system.instance_class))
+    kernel = banded.factor_kernel(banded.full(derivative_half_bandwidth(system.instance_class)))
     return lambda system, band: kernel(band)  # noqa: ARG005
 
 
 @overload(solve_derivative, strict=False, jit_options=RESOLVED)
 def _solve_derivative(system: Any, band: Any, x: Any) -> Any:
-    kernel = banded.solve_kernel(derivative_half_bandwidth(system.instance_class))
+    kernel = banded.solve_kernel(banded.full(derivative_half_bandwidth(system.instance_class)))
     return lambda system, band, x: kernel(band, x)  # noqa: ARG005

@@ -21,8 +21,8 @@ from undula.numerics.control import rescale
 from undula.numerics.integrate import take_step
 from undula.numerics.memory import ORDER, STEP, TIME
 from undula.numerics.results import Status
-from undula.numerics.stepping import workspace
 from undula.numerics.system import derivative, factor_derivative, solve_derivative, weigh
+from undula.numerics.workspace import workspace
 
 _DONE, _PAUSED = Status.DONE.value, Status.PAUSED.value
 _NOT_FINITE = Status.NOT_FINITE.value
