@@ -277,7 +277,7 @@ def test_another_step_length_leaves_the_interpolating_polynomial_as_it_was(
     rng = np.random.default_rng(order)
     before = rng.normal(size=(order + 1, 4))
     after = before.copy()
-    rescale(after, order, ratio)
+    rescale(after, order, ratio, np.empty((2, order + 1)))
     for place in (-2.3, -1.0, -0.4, 0.0, 0.7):
         # Coefficients of up to ratio^order cancel.
         np.testing.assert_allclose(

@@ -115,7 +115,7 @@ def test_changes_are_the_derivative_of_the_steps_of_known_systems(system: Known)
 @pytest.mark.parametrize(
     "model",
     [
-        un.Filament(6, un.TipLoad(75.0)),
+        un.Filament(12, un.TipLoad(75.0)),
         un.Filament(6, un.LinearLoad(200.0, 0.5), inextensibility="weak", tensile_stiffness=1e3),
         un.Filament(6, un.TipLoad(75.0), confined=True),
         un.Chain(3, un.TipLoad(20.0), drag_ratio=1.5),

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import numpy as np
-
 from undula.compiled import kernel
 from undula.numerics.memory import (
     EQUAL_STEPS,
@@ -32,35 +30,35 @@ ENGAGE_BELOW, RELEASE_ABOVE, VOTES = 0.3, 0.8, 10
 
 
 @kernel
-def rescale(differences: Any, order: Any, ratio: Any) -> None:
+def rescale(differences: Any, order: Any, ratio: Any, series: Any) -> None:
     """Turn backward differences up to `order` for a step h into those for ratio * h, in place.
 
     The interpolating polynomial stays the same: with the backward shift 1 - D over h, the new
-    differences are powers of 1 - (1 - D)^ratio, a series in D. For polynomials it is finite.
+    differences are powers of 1 - (1 - D)^ratio, a series in D that is finite for polynomials.
+    `series` (2, order + 1) is scratch for its coefficients and for those of its powers.
     """
-    shift, power = np.zeros(order + 1), np.zeros(order + 1)
-    binomial, power[0] = 1.0, 1.0
+    binomial, series[1, 0] = 1.0, 1.0
     for j in range(1, order + 1):
         binomial *= (j - 1 - ratio) / j
-        shift[j] = -binomial
+        series[0, j], series[1, j] = -binomial, 0.0
     for k in range(1, order + 1):
-        for j in range(order, -1, -1):  # power times shift, from the highest term down
+        for j in range(order, -1, -1):  # the next power, from the highest term down
             term = 0.0
             for i in range(1, j + 1):
-                term += shift[i] * power[j - i]
-            power[j] = term
+                term += series[0, i] * series[1, j - i]
+            series[1, j] = term
         for i in range(differences.shape[1]):  # needs rows k and higher only
-            differences[k, i] *= power[k]
+            differences[k, i] *= series[1, k]
         for j in range(k + 1, order + 1):
             for i in range(differences.shape[1]):
-                differences[k, i] += power[j] * differences[j, i]
+                differences[k, i] += series[1, j] * differences[j, i]
 
 
 @kernel
-def change_step(memory: Any, ratio: Any) -> None:
+def change_step(memory: Any, work: Any, ratio: Any) -> None:
     """Change the length of the steps by a factor."""
     if ratio != 1.0:
-        rescale(memory.differences, memory.count[ORDER], ratio)
+        rescale(memory.differences, memory.count[ORDER], ratio, work.series)
         memory.real[STEP] *= ratio
         memory.count[EQUAL_STEPS] = 0
 

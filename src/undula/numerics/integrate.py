@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from undula.compiled import entry, kernel
+from undula.lent import lent
 from undula.numerics.control import (
     SAFETY,
     SHORTEST_FACTOR,
@@ -65,7 +66,7 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
     if options.frame == 1:
         choose_frame(system, memory)
     memory.count[ORDER] = memory.count[PLANNED_ORDER]
-    change_step(memory, memory.real[PLANNED_FACTOR])
+    change_step(memory, work, memory.real[PLANNED_FACTOR])
     while True:
         shortest = SHORTEST_ABSOLUTE + SHORTEST_RELATIVE * abs(memory.real[TIME])
         if not memory.real[STEP] >= shortest:
@@ -75,7 +76,7 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
             return _NOT_FINITE
         if not correct(system, memory, options, work, c, scale):
             memory.count[FAILED] += 1
-            change_step(memory, FAILURE_FACTOR)
+            change_step(memory, work, FAILURE_FACTOR)
             continue
         integrate_rates(system, work, c)
         error = step_error(system, memory, options, work) / scale
@@ -85,7 +86,7 @@ def take_step(system: Any, memory: Any, options: Any, work: Any) -> Any:
         factor = SHORTEST_FACTOR
         if np.isfinite(error):
             factor = max(factor, SAFETY * factor_for(error, memory.count[ORDER]))
-        change_step(memory, factor)
+        change_step(memory, work, factor)
     accept(memory, work)
     memory.real[TIME] += memory.real[STEP]
     memory.count[STEPS] += 1
@@ -149,6 +150,32 @@ def advance(
         A `Status` value, the number of times and of sections filled.
     """
     work = workspace(memory.factored_at.shape[0])
+    told = step_on(
+        lent(system),
+        lent(memory),
+        lent(options),
+        lent(work),
+        lent(times),
+        lent(states),
+        lent(sections),
+        most_steps,
+    )
+    work.rates[0] = 0.0  # the scratch has to be there until here
+    return told
+
+
+@kernel
+def step_on(
+    system: Any,
+    memory: Any,
+    options: Any,
+    work: Any,
+    times: Any,
+    states: Any,
+    sections: Any,
+    most_steps: Any,
+) -> Any:
+    """Step on, see `advance`, with scratch and everything else lent."""
     filled, found, taken = 0, 0, 0
     while True:
         while filled < times.shape[0] and times[filled] <= memory.real[TIME]:

@@ -100,6 +100,6 @@ def advance_with_changes(
             return _NOT_FINITE
         for k in range(changes.shape[0]):
             if ratio != 1.0:
-                rescale(changes[k], order, ratio)
+                rescale(changes[k], order, ratio, work.series)
             carry(system, memory, options, work, changes[k], band, scratch)
     return _DONE

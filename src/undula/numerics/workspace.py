@@ -7,6 +7,9 @@ import numpy as np
 from undula.compiled import kernel
 from undula.numerics.system import RATES
 
+#: Backward differentiation of a higher order is unstable.
+HIGHEST_ORDER = 6
+
 
 class Work(NamedTuple):
     """Scratch of a step, so that a step allocates nothing; slices of arrays would count as well."""
@@ -20,6 +23,7 @@ class Work(NamedTuple):
     phase: np.ndarray  # S psi: a step without rotation in the frame has <S psi, y> = 0
     correction: np.ndarray
     rates: np.ndarray  # (RATES,)
+    series: np.ndarray  # (2, HIGHEST_ORDER + 1) for a change of step
 
 
 @kernel
@@ -36,4 +40,5 @@ def workspace(n: Any) -> Any:
         np.zeros(n),
         np.zeros(n),
         np.zeros(RATES),
+        np.zeros((2, HIGHEST_ORDER + 1)),
     )
