@@ -6,6 +6,7 @@ BIN := $(VENV)/bin
 MADE := $(VENV)/.made
 RUN := $(VENV)/.installed-run
 DEV := $(VENV)/.installed-dev
+BENCH := $(VENV)/.installed-bench
 INPUTS := pyproject.toml constraints.txt
 
 # The first interpreter that starts and is new enough. A name on the PATH may be an empty shim.
@@ -22,7 +23,7 @@ help:
 	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint       style, types and import rules"
 	@echo "make docs       build the documentation into site/"
-	@echo "make bench      cost per step and per period, and of states solved for"
+	@echo "make bench      cost of steps, periods and states, and all beside other solvers (an hour)"
 	@echo "make clean      remove what the other commands made, results excepted"
 
 run: $(RUN)
@@ -43,9 +44,13 @@ lint: $(DEV)
 docs: $(DEV)
 	NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --strict --quiet
 
-bench: $(RUN)
+bench: $(BENCH)
 	$(BIN)/python benchmarks/step_cost.py
+	$(BIN)/python benchmarks/step_profile.py
 	$(BIN)/python benchmarks/state_cost.py
+	$(BIN)/python benchmarks/contest.py
+	$(BIN)/python benchmarks/cost_and_size.py
+	$(BIN)/python benchmarks/work_precision.py
 
 clean:
 	rm -rf $(VENV) site build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis .benchmarks
@@ -68,4 +73,8 @@ $(RUN): $(MADE) $(INPUTS)
 
 $(DEV): $(MADE) $(INPUTS)
 	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e '.[dev,docs]'
+	@touch $(RUN) $@
+
+$(BENCH): $(MADE) $(INPUTS)
+	$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	@touch $(RUN) $@

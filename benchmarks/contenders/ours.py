@@ -1,0 +1,39 @@
+"""undula on the same windows: in the lab frame, in the co-rotating frame, and as one calls it."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+import undula as un
+from undula.analysis.schedule import Schedule
+from undula.analysis.simulation import Simulation
+from undula.arrays import Array
+from undula.numerics.integrate import advance
+from undula.numerics.system import RATES
+
+_NEVER = np.iinfo(np.int64).max
+Ours = Callable[[un.Filament, Array, Array, float], tuple[Array, Array]]
+
+
+def stepped(*, turning: bool) -> Ours:
+    """Return how the integrator runs in the lab frame, or in the one that turns along.
+
+    What is timed includes the set-up of a run, and no naming, report or record of it.
+    """
+
+    def run(model: un.Filament, x: Array, times: Array, rtol: float) -> tuple[Array, Array]:
+        schedule = Schedule(rtol=rtol)
+        options = schedule.options(model)._replace(frame=int(turning))
+        memory = Simulation.begin(model, x, schedule).memory
+        states = np.empty((times.size, memory.differences.shape[1]))
+        sections = np.empty((0, 1 + states.shape[1]))
+        advance(model.system, memory, options, times, states, sections, _NEVER)
+        return times, model.positions(states[:, :-RATES])
+
+    return run
+
+
+def called(model: un.Filament, x: Array, times: Array, rtol: float) -> tuple[Array, Array]:
+    """Run `undula.integrate` as it comes, with 4000 samples, their energies and their record."""
+    run = un.integrate(model, x, until=float(times[-1]), rtol=rtol)
+    return run.motion.time, run.motion.nodes[:, 1:].reshape(run.motion.time.size, -1)
