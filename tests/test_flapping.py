@@ -110,7 +110,8 @@ def test_a_run_in_the_plane_settles_to_the_beat(case: str) -> None:
     motion = run.motion
     # 64 instants of the sharpest beat, the point load's, leave 2e-5 of its energy between them.
     agree(state.energy, motion.energetics.bending_energy[1:], 5e-5)
-    agree(state.tip_height, tip_height(motion.nodes)[1:], 1e-6)
+    # And 2e-6 of its lowest tip, more or less by where in the beat they lie.
+    agree(state.tip_height, tip_height(motion.nodes)[1:], 4e-6)
     sideways = motion.nodes[1:, -1, 0]
     assert state.tip_radius.min == 0.0
     assert sideways.min() < 0.0 < sideways.max()
