@@ -23,7 +23,7 @@ help:
 	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint       style, types and import rules"
 	@echo "make docs       build the documentation into site/"
-	@echo "make bench      cost of steps, periods and states, and all beside other solvers (an hour)"
+	@echo "make bench      cost of steps, periods, states and points, and all beside other solvers (an hour)"
 	@echo "make clean      remove what the other commands made, results excepted"
 
 run: $(RUN)
@@ -48,6 +48,7 @@ bench: $(BENCH)
 	$(BIN)/python benchmarks/step_cost.py
 	$(BIN)/python benchmarks/step_profile.py
 	$(BIN)/python benchmarks/state_cost.py
+	$(BIN)/python benchmarks/points.py
 	$(BIN)/python benchmarks/contest.py
 	$(BIN)/python benchmarks/cost_and_size.py
 	$(BIN)/python benchmarks/work_precision.py

@@ -366,3 +366,24 @@ def test_exponents_change_no_name_that_is_told_without_but_tell_what_will_not_la
     assert unstable.name == found.name
     assert "neighbouring motions part at 5" in unstable.reason
     assert unstable.evidence["lyapunov"] == 5.0
+
+
+def test_a_beat_whose_plane_hardly_turns_is_planar_however_long_it_is_watched() -> None:
+    # By 2 mrad a beat, which is less than shapes that come back may be off.
+    time = Clock(80.0, 48.0).time
+    found = first_verdict(
+        *line(time, turned(wave(time), 2e-3 / (2.0 * np.pi) * time)).data, settled_from=0.0
+    )
+    assert found.evidence["planarity"] > 0.02  # that of all beats together
+    assert found.name == "planar flapping"
+
+
+def test_what_comes_nearer_to_a_plane_all_the_time_has_not_settled() -> None:
+    time = Clock(12.0, 48.0).time
+    for rate, told in ((0.0, "non-planar flapping"), (0.015, "undecided")):
+        # By a fifth in all, and by less than that from one half to the other.
+        across = 0.1 * np.exp(-rate * time)[:, None]
+        sides = wave(time) + 1j * across * np.roll(wave(time), 12, axis=0)
+        found = first_verdict(*line(time, sides).data, settled_from=0.0)
+        assert found.name == told, found.reason
+    assert "settles into a plane" in found.reason

@@ -116,7 +116,7 @@ def test_the_range_of_a_conditional_key_is_told(
             "shape = 'straight'",
             "'kicked', 'planar', 'helix', 'mode' or 'state'",
         ),
-        ("time", {"limit": 5.0}, "until = 1.0", "'settled'"),
+        ("time", {"limit": 5.0}, "until = 1.0", "'settled' or 'solved'"),
     ],
 )
 def test_a_key_that_nothing_would_read_is_refused(
@@ -227,7 +227,7 @@ def test_of_several_mistakes_the_first_is_told_and_the_others_are_counted() -> N
 
 def test_a_value_refused_as_number_and_as_word_is_one_mistake() -> None:
     assert complaint_on(time={"until": "x"}) == (
-        "time.until = 'x' is text; time.until takes a number above 0 or 'settled'"
+        "time.until = 'x' is text; time.until takes a number above 0, 'settled' or 'solved'"
     )
 
 

@@ -14,9 +14,10 @@ import numpy as np
 from undula.analysis.motion import Motion
 from undula.analysis.recent import FEWEST
 from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import ENOUGH_A_PERIOD, Simulation, sampled_again
+from undula.analysis.simulation import ENOUGH_A_PERIOD, Simulation, copied
 from undula.arrays import Array, Instants
 from undula.models.model import Model
+from undula.numerics.integrate import advance
 from undula.numerics.memory import Memory
 
 #: Periods in a close-up, if the marks reach back so far: frequencies gain with their square.
@@ -67,7 +68,7 @@ def close_up(simulation: Simulation) -> CloseUp | None:
     if fast is None or interval * ENOUGH_A_PERIOD <= fast:
         return None
     end = simulation.time
-    periods = PERIODS if simulation.settled else PERIODS_UNSETTLED
+    periods = PERIODS if simulation.settled or simulation.arrival else PERIODS_UNSETTLED
     start = max(end - periods * slow, simulation.earliest_mark, _repeating_from(simulation))
     # Powers of two, so that there are samples at the same times whoever makes them.
     parts = 1
@@ -90,3 +91,34 @@ def close_up(simulation: Simulation) -> CloseUp | None:
 def _repeating_from(simulation: Simulation) -> float:
     settled = simulation.settled
     return settled.since if settled is not None and settled.kind in REPEATING else 0.0
+
+
+def sampled_again(model: Model, schedule: Schedule, mark: Memory, times: Array) -> Array:
+    """Sample a part of a run once more, at other times.
+
+    Parameters
+    ----------
+    model, schedule
+        Those of the run.
+    mark : Memory
+        One of its marks.
+    times : ndarray, shape (m,)
+        Increasing times between the mark and the end of the run [T].
+
+    Returns
+    -------
+    ndarray, shape (m, n + RATES)
+        The very trajectory of the run, at these times.
+    """
+    memory = copied(mark)
+    states = np.empty((times.size, memory.differences.shape[1]))
+    advance(
+        model.system,
+        memory,
+        schedule.options(model),
+        times,
+        states,
+        np.empty((0, 1 + states.shape[1])),
+        np.iinfo(np.int64).max,
+    )
+    return states

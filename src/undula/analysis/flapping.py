@@ -156,7 +156,7 @@ def _start_and_half_period(
     run = guess or integrate(flat, planar(flat, _START), until="settled", limit=_longest(flat))
     if guess is None and run.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt  # which a run takes as its end, with what there is
-    if run.frequency is None or run.frequency.value == 0.0:
+    if run.frequency is None or run.frequency.value == 0.0 or run.verdict.name == "windmilling":
         whose = "given" if guess else "confined"
         return NotFound(f"the {whose} run does not beat ({run.verdict.name}): {_onset_text(flat)}")
     half = 0.5 / abs(run.frequency.value)

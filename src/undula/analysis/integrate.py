@@ -1,22 +1,27 @@
 """Run a model: the call behind `undula.integrate` and behind the command `undula run`."""
 
+import math
 import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import FrameType
 from typing import Literal
 
 import numpy as np
 
+from undula.analysis.evidence import GROWTH_FACTOR
 from undula.analysis.judging import Exponents
+from undula.analysis.late import PLANAR_TOLERANCE
 from undula.analysis.regimes import UNDECIDED
 from undula.analysis.returns import RECURRENT
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending, Schedule
+from undula.analysis.settling import SHOWN_CYCLES, Settled
 from undula.analysis.simulation import Simulation
+from undula.analysis.trends import Halves, out_of_plane
 from undula.arrays import State
 from undula.models.model import Model
 from undula.numerics import memory as names
@@ -24,6 +29,10 @@ from undula.numerics import memory as names
 #: Maxima of the energy after which a run to the settled state is asked whether its motion is
 #: irregular, and after twice as many again and again.
 FIRST_ASKED = 240
+#: What is told from the few beats that a run to the solved state shows first.
+BRIEFLY_TOLD = "planar flapping"
+#: What it is else is told from steps that are as exact: errors of larger ones may keep it alive.
+TIGHT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -41,7 +50,7 @@ def integrate(
     model: Model,
     start: State,
     *,
-    until: float | Literal["settled"] = 1.0,
+    until: float | Literal["settled", "solved"] = 1.0,
     limit: float = 10.0,
     samples: int = 4000,
     rtol: float = 1e-6,
@@ -58,8 +67,9 @@ def integrate(
         For example a `Filament`.
     start : ndarray, shape (model.size,)
         The state at time 0, for example ``kicked(model)``.
-    until : float or "settled"
-        Time at which the run ends [T], or until the motion repeats itself.
+    until : float, "settled" or "solved"
+        Time at which the run ends [T]; or until the motion repeats itself; or until then at the
+        latest, but only until a stable straight or spinning state is found next to it.
     limit : float
         Time at which a run to the settled state gives up [T].
     samples : int
@@ -139,19 +149,44 @@ def _settled(simulation: Simulation) -> Run | None:
     """Return a run that has settled; have it go on if it takes more of it to name the motion."""
     if simulation.ending is not Ending.SETTLED:
         return None
-    run = Run.of(simulation)
-    if run.verdict.longer is not None and simulation.time < simulation.schedule.end:
+    run, settled = Run.of(simulation), simulation.settled
+    if settled and settled.brief and run.verdict.name != BRIEFLY_TOLD:
+        if settled.brief == 1 and simulation.schedule.rtol > TIGHT:
+            simulation.tighten(TIGHT)
+            return None
+        simulation.settled = _shown_again(settled, run)
+        simulation.ending = Ending.RUNNING
+    elif run.verdict.longer is not None and simulation.time < simulation.schedule.end:
         simulation.shown_until = simulation.time + run.verdict.longer
         simulation.ending = Ending.RUNNING
     return run
 
 
+def _shown_again(settled: Settled, run: Run) -> Settled:
+    """Return a motion that was shown too briefly as it is to be shown next: later, then longer."""
+    if settled.brief == 1:
+        return replace(settled, cycles=SHOWN_CYCLES, brief=0)
+    half = 0.5 * (float(run.motion.time[-1]) - settled.since)
+    since = settled.since + half * (1.0 + _until_flat(out_of_plane(run.window.nodes)))
+    return replace(settled, since=since, brief=settled.brief - 1)
+
+
+def _until_flat(share: Halves) -> float:
+    """Return in how many halves more of a window a motion will be flat, if it flattens at all."""
+    if not share.first > GROWTH_FACTOR * share.last > GROWTH_FACTOR * PLANAR_TOLERANCE:
+        return 0.0
+    return math.log(share.last / PLANAR_TOLERANCE) / math.log(share.first / share.last)
+
+
 def _irregular(simulation: Simulation) -> Run | None:
     """Return a run that waits for its motion to repeat itself if it is seen not to."""
-    if simulation.schedule.until != "settled" or simulation.settled is not None:
+    if not simulation.schedule.open_ended or simulation.settled is not None:
         return None
     if simulation.watch.returned().min(initial=np.inf) <= RECURRENT:
         return None  # it does, but for a little, and takes its time to settle
+    if simulation.schedule.until == "solved" and simulation.schedule.rtol > TIGHT:
+        simulation.tighten(TIGHT)
+        return None
     simulation.ending = Ending.IRREGULAR
     run = Run.of(simulation)
     if run.lyapunov is not None and run.verdict.name != UNDECIDED:

@@ -3,11 +3,15 @@
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
+from undula.analysis.arrival import FALLEN, NEAR, TURNS, Arrival, motion_of
 from undula.analysis.close_up import CloseUp
 from undula.analysis.finite_separation import FOLDS, Separation, finite_separation
 from undula.analysis.lyapunov import Lyapunov, lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.regimes import (
+    MOST,
     SIGNIFICANT,
     STRAIGHT,
     UNDECIDED,
@@ -21,6 +25,7 @@ from undula.analysis.settling import Settled
 from undula.arrays import Array, Instants, Shapes
 from undula.errors import InputError
 from undula.models.model import Model
+from undula.numerics.system import RATES
 
 #: Maxima, beats and turns over which exponents are taken, whichever is the shortest.
 FOLLOWED = {"maxima": 300.0, "periods": 150.0, "turns": 50.0}
@@ -67,7 +72,7 @@ def judge(
     schedule: Schedule,
     motions: tuple[Motion, CloseUp | None],
     last: Array,
-    settled: Settled | None,
+    come_to: Settled | Arrival | None,
     exponents: Exponents,
 ) -> Judged:
     """Judge a run by its whole motion and by the close-up of its end.
@@ -79,21 +84,46 @@ def judge(
     motions
         The whole run, and its last periods at finer intervals if it needs them.
     last
-        The integrator's vector at its end, shape ``(n,)``.
-    settled
-        How it repeats itself, if it was watched for that and does.
+        Its last sample, shape ``(n + RATES,)``.
+    come_to
+        How it repeats itself, if it was watched for that and does, or the state that it was left
+        for.
     exponents
         When to compute Lyapunov exponents.
     """
-    judged = _first(model, *motions, settled)
+    if isinstance(come_to, Arrival):
+        judged = Judged(_arrived(come_to), motion_of(come_to, model, last))
+        last = last if come_to.state is None else np.append(come_to.state.unknowns, last[-RATES:])
+    else:
+        judged = _first(model, *motions, come_to)
     motion = judged.motion
     asked = exponents is Exponents.ALWAYS
     if not asked and (judged.verdict.late is None or exponents is Exponents.NEVER):
         return judged
     try:
-        return _with_exponents(model, schedule, judged, last, parting=asked)
+        return _with_exponents(model, schedule, judged, last[:-RATES], parting=asked)
     except InputError as error:
         return Judged(judged.verdict, motion, without=str(error))
+
+
+def _arrived(arrival: Arrival) -> Verdict:
+    """Return the verdict on a run that was left for a state."""
+    rate, near = arrival.leading_rate, arrival.relative
+    evidence = {"distance": arrival.distance, "leading_rate": rate}
+    if arrival.state is None:
+        reason = f"small and falling, to {near:.2g} of what it was; the straight state is stable"
+        limit = FALLEN
+    else:
+        reason = f"{near:.2g} of itself from a spinning state, which is stable"
+        limit, turning = NEAR, arrival.state.rate / (2.0 * np.pi)
+        evidence |= {
+            "turns": float(TURNS),
+            "frequency": turning,
+            "frequency_error": arrival.state.residual * abs(turning),
+        }
+    told = f"{reason}: disturbances decay at {-rate:.4g}/T at least"
+    name = STRAIGHT if arrival.state is None else arrival.kind
+    return Verdict(name, told, evidence, arrival.time, margin=min(MOST, limit / max(near, 1e-9)))
 
 
 def _first(model: Model, whole: Motion, close: CloseUp | None, settled: Settled | None) -> Judged:

@@ -22,7 +22,7 @@ from undula.analysis.evidence import GROWTH_FACTOR, MIN_TURNS, STEADY_SHAPE
 from undula.analysis.late import GOES_ROUND, PLANAR_TOLERANCE, Late, Name, below
 from undula.analysis.naming_held import ASIDE, held_name, rests
 from undula.analysis.returns import RECURRENT, STEADY_FACTOR
-from undula.analysis.trends import out_of_plane, shape_change, swing
+from undula.analysis.trends import flattens, out_of_plane, shape_change, swing
 from undula.analysis.window import STATIONARY
 
 # Share out of the plane below which a beat in a turning plane still is one.
@@ -131,6 +131,9 @@ def _kinematic(late: Late, manner: str, margin: float, unrest: str) -> Name:
     margin = min(margin, below((sense, GOES_ROUND)))
     beat, turn = late.beat_planarity, abs(late.plane_turn)
     told = f"{manner}; each beat is {beat:.2g} off a plane"
+    if beat <= PLANAR_TOLERANCE and turn < PRECESSES:
+        margin = min(margin, below((beat, PLANAR_TOLERANCE), (turn, PRECESSES)))
+        return Name("planar flapping", told, margin, unrest)
     if beat <= PRECESSING_TOLERANCE and turn >= PRECESSES:
         margin = min(margin, below((beat, PRECESSING_TOLERANCE)), turn / PRECESSES)
         return Name("precessing flapping", told, margin, unrest)
@@ -152,6 +155,8 @@ def _leaves_its_plane(late: Late) -> str:
     share = out_of_plane(late.nodes)
     if share.grows(GROWTH_FACTOR, VISIBLE * PLANAR_TOLERANCE):
         return f"it leaves its plane, by {share.first:.2g} and then {share.last:.2g} of itself"
-    if share.first > max(PLANAR_TOLERANCE, GROWTH_FACTOR * share.last):
+    if share.first > PLANAR_TOLERANCE and (
+        share.first > GROWTH_FACTOR * share.last or flattens(late.nodes)
+    ):
         return f"it settles into a plane, {share.first:.2g} and then {share.last:.2g} off it"
     return ""

@@ -5,6 +5,9 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, Self
 
+import numpy as np
+
+from undula.analysis.arrival import Arrival
 from undula.analysis.close_up import CloseUp, close_up
 from undula.analysis.finite_separation import Separation
 from undula.analysis.frequency import (
@@ -24,9 +27,8 @@ from undula.analysis.regimes import STRAIGHT, Verdict
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Settled
 from undula.analysis.simulation import Simulation
-from undula.arrays import Array
+from undula.arrays import Array, Nodes
 from undula.models.model import Model
-from undula.numerics.system import RATES
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,11 @@ class Run:
         Its last periods at finer intervals; None where the samples are fine enough.
     settled : Settled or None
         How it repeats itself, if it was watched for that and does.
+    arrival : Arrival or None
+        The state that a run to the solved one was left for: its verdict and figures are those of
+        the state, its motion the trajectory so far.
+    tight_from : float or None
+        Time from which on its steps are more exact than was asked for [T].
     checkpoint : mapping of str to ndarray
         Arrays from which it can be resumed exactly.
     exponents : Exponents
@@ -58,6 +65,8 @@ class Run:
     motion: Motion
     closer: CloseUp | None
     settled: Settled | None
+    arrival: Arrival | None
+    tight_from: float | None
     checkpoint: Mapping[str, Array]
     exponents: Exponents = Exponents.IF_IRREGULAR
 
@@ -72,6 +81,8 @@ class Run:
             motion=Motion.of(simulation.model, simulation.times, simulation.states),
             closer=close_up(simulation),
             settled=simulation.settled,
+            arrival=simulation.arrival,
+            tight_from=simulation.tight_from,
             checkpoint=simulation.checkpoint(),
             exponents=exponents,
         )
@@ -82,8 +93,8 @@ class Run:
             self.model,
             self.schedule,
             (self.motion, self.closer),
-            self.checkpoint["states"][-1, :-RATES],
-            self.settled,
+            self.checkpoint["states"][-1],
+            self.arrival or self.settled,
             self.exponents,
         )
 
@@ -124,7 +135,14 @@ class Run:
     @cached_property
     def shown(self) -> Motion:
         """The same part at intervals that are fine enough to follow single periods."""
+        if self.arrival is not None:
+            return self.window
         return (self.close_up or self.motion).late(self.verdict.window_start)
+
+    @property
+    def last_shape(self) -> Nodes:
+        """Nodes (N + 1, 3) at its end [L]; those of the state that it was left for."""
+        return np.asarray((self.motion if self.arrival is None else self.window).nodes[-1])
 
     @cached_property
     def frequency(self) -> Frequency | None:
@@ -204,6 +222,8 @@ class Run:
             "window": [float(late.time[0]), float(late.time[-1])],
             "settled": asdict(self.settled) if self.settled else None,
             "settled_from": self.settled.since if self.settled else None,
+            "solved": self.arrival.told() if self.arrival else None,
+            "tight_from": self.tight_from,
             **asdict(self.health),
         }
 

@@ -27,6 +27,7 @@ class Ending(Enum):
     RUNNING = "running"
     DONE = "done"
     SETTLED = "settled"
+    SOLVED = "solved"
     IRREGULAR = "irregular"
     LIMIT = "limit reached"
     INTERRUPTED = "interrupted"
@@ -40,8 +41,9 @@ class Schedule:
 
     Attributes
     ----------
-    until : float or "settled"
-        Time at which the run ends [T], or until it repeats itself.
+    until : float, "settled" or "solved"
+        Time at which the run ends [T]; or until it repeats itself; or until then at the latest, or
+        until Newton's method finds a stable state next to it.
     limit : float
         Time at which a run to the settled state gives up [T].
     samples : int
@@ -51,7 +53,7 @@ class Schedule:
         and absolute [rad].
     """
 
-    until: float | Literal["settled"] = 1.0
+    until: float | Literal["settled", "solved"] = 1.0
     limit: float = 10.0
     samples: int = 4000
     rtol: float = 1e-6
@@ -59,8 +61,14 @@ class Schedule:
 
     def __post_init__(self) -> None:
         """Refuse values that make no run."""
-        if self.until != "settled" and not (is_number(self.until) and self.until > 0.0):
-            raise InputError(f"until = {self.until!r} has to be a positive number or 'settled'")
+        if isinstance(self.until, str):
+            known = self.open_ended
+        else:
+            known = is_number(self.until) and self.until > 0.0
+        if not known:
+            raise InputError(
+                f"until = {self.until!r} has to be a positive number, 'settled' or 'solved'"
+            )
         for name in ("limit", "rtol", "atol"):
             value = getattr(self, name)
             if not (is_number(value) and value > 0.0):
@@ -69,14 +77,19 @@ class Schedule:
             raise InputError(f"samples = {self.samples!r} has to be a whole number, at least 2")
 
     @property
+    def open_ended(self) -> bool:
+        """Whether the run itself tells when it ends, before a limit."""
+        return self.until in ("settled", "solved")
+
+    @property
     def end(self) -> float:
         """Time at which the run ends at the latest [T]."""
-        return self.limit if self.until == "settled" else float(self.until)
+        return self.limit if self.open_ended else float(self.until)
 
     @property
     def interval(self) -> float:
         """First interval between samples [T]."""
-        if self.until == "settled":
+        if self.open_ended:
             return FINER / (self.samples - 1)
         return float(self.until) / (self.samples - 1)
 
@@ -89,6 +102,6 @@ class Schedule:
             rtol=self.rtol,
             atol=self.atol,
             stale_after=STALE_AFTER,
-            longest_step=LONGEST_STEP * self.limit if self.until == "settled" else math.inf,
+            longest_step=LONGEST_STEP * self.limit if self.open_ended else math.inf,
             frame=model.dimension == 3 and model.axisymmetric,
         )

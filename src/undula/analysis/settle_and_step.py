@@ -224,7 +224,7 @@ def _step(run: Run, value: float, direction: str, began: float) -> Step:
         "direction": direction,
         "cause": run.cause,
         "seconds": time.monotonic() - began,
-        "nodes": run.motion.nodes[-1],
+        "nodes": run.last_shape,
         "shape_times": times,
         "shapes": shapes,
     }

@@ -17,7 +17,7 @@ import math
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import islice, takewhile
 from typing import Literal
 
 import numpy as np
@@ -33,8 +33,19 @@ TOLERANCE_IN_RTOL = 100.0
 NOISE_IN_RTOL = 10.0
 #: Repetitions, or turns, that have to agree.
 REPETITIONS = 5
-#: Beats or turns of a settled motion that a run goes on to show.
-SHOWN_CYCLES = 12
+#: Repetitions after which changes that neither grow nor add up are known to be noise, for which
+#: single ones may be too large: what the steps do in step with the motion (an even number).
+MANY_REPETITIONS = 20
+#: Changes that are larger by more than this factor in the later half of them grow; they lead
+#: somewhere if they add up to more than this times the largest.
+HOVERING = 1.5
+#: Beats or turns of a settled motion that a run goes on to show; and of one that has arrived, whose
+#: changes are no more than errors of the integration. What still settles slowly, as a beat into its
+#: plane, is named wrongly if it is seen more briefly (docs/notes/points.md).
+SHOWN_CYCLES, SHOWN_ARRIVED = 12, 6
+#: And of one that is shown for no longer than a beat in its plane takes to be told as such, and how
+#: often that is tried.
+SHOWN_BRIEFLY, BRIEFLY = 3, 6
 #: A shape at rest is shown for this part more of the time that it took to come to rest.
 STILL = 1.25
 #: Most maxima of the energy that one period may have.
@@ -65,6 +76,10 @@ class Settled:
         Time after which the shape repeats up to rotation and reflection [T]; None if it is steady.
     turn : float or None
         Time of one turn about the axis [T]; None without rotation.
+    cycles : int
+        Beats or turns for which it should be seen.
+    brief : int
+        How often it may be shown so briefly that nothing but a beat in a plane can be told.
     """
 
     kind: Literal["at rest", "still", "steady", "periodic"]
@@ -72,6 +87,8 @@ class Settled:
     remaining: float
     period: float | None
     turn: float | None
+    cycles: int = SHOWN_CYCLES
+    brief: int = 0
 
     @property
     def shown_until(self) -> float:
@@ -79,7 +96,7 @@ class Settled:
         if self.kind == "still":
             return STILL * self.since
         cycle = 2.0 * self.period if self.period else self.turn  # two mirror images a beat
-        return self.since + SHOWN_CYCLES * (cycle or 0.0)
+        return self.since + self.cycles * (cycle or 0.0)
 
 
 @dataclass(frozen=True)
@@ -109,6 +126,8 @@ class Watch:
         Displacement at the start, as the integrator measures it.
     compare : callable
         How shapes are compared.
+    brief : bool
+        Whether beats are shown briefly first.
     seen : int
         Maxima of the energy in all.
     """
@@ -116,6 +135,7 @@ class Watch:
     rtol: float
     start: float
     compare: Compare = aligned_distance
+    brief: bool = False
     paces: deque[Pace] = field(default_factory=lambda: deque(maxlen=MOST_LOOKS))
     returns: deque[tuple[float, Nodes]] = field(
         default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MOST_MAXIMA)
@@ -161,7 +181,8 @@ class Watch:
         last = self.paces[-1]
         if last.turn is None:
             return None
-        late = [pace for pace in self.paces if pace.time >= last.time - REPETITIONS * last.turn]
+        since = last.time - REPETITIONS * last.turn
+        late = list(takewhile(lambda pace: pace.time >= since, reversed(self.paces)))[::-1]
         if len(late) < REPETITIONS or late[0] is self.paces[0]:
             return None
         drifts = [pace.shape_speed * last.turn / pace.displacement for pace in late]
@@ -171,25 +192,46 @@ class Watch:
         return Settled("steady", late[0].time, remaining, None, last.turn)
 
     def _periodic(self) -> Settled | None:
-        apart = self.returned()
-        for lag in range(1, MOST_MAXIMA + 1):
-            if len(self.returns) < (REPETITIONS + 1) * lag:
+        near = np.flatnonzero(self.returned() <= TOLERANCE_IN_RTOL * self.rtol) + 1
+        for lag in near.tolist():  # mostly none, so that nearly all looks cost nothing
+            times, shapes = self._repetitions(lag, REPETITIONS)
+            if len(times) <= REPETITIONS:
                 return None
-            if apart[lag - 1] > TOLERANCE_IN_RTOL * self.rtol:
-                continue  # so that nearly all lags cost nothing
-            returns = [self.returns[-k * lag - 1] for k in range(REPETITIONS + 1)][::-1]
-            shapes = np.array([nodes for _, nodes in returns])
             changes = self._changes(shapes[:-1], shapes[1:]).tolist()
             directed = self._changes(shapes[0], shapes[-1]) > DIRECTED * sum(changes)
             remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol, directed=directed)
-            if remaining is not None:
-                times = [time for time, _ in returns]
-                period = (times[-1] - times[0]) / (len(times) - 1)
-                last = self.paces[-1]
-                if last.shape_speed * period < LEAST_SWING * last.displacement:
-                    return Settled("steady", times[0], remaining, None, last.turn)
-                return Settled("periodic", times[0], remaining, period, last.turn)
+            if remaining is None:
+                remaining = self._hovering(lag)
+            if remaining is None:
+                continue
+            # What comes back after the shortest of them comes back after its multiples as well.
+            shortest = next(each for each in near.tolist() if lag % each == 0)
+            period = (times[-1] - times[0]) / REPETITIONS * shortest / lag
+            last = self.paces[-1]
+            if last.shape_speed * period < LEAST_SWING * last.displacement:
+                return Settled("steady", times[0], remaining, None, last.turn)
+            arrived = remaining <= NOISE_IN_RTOL * self.rtol
+            cycles = SHOWN_ARRIVED if arrived else SHOWN_CYCLES
+            shown = (SHOWN_BRIEFLY, BRIEFLY) if self.brief else (cycles, 0)
+            return Settled("periodic", times[0], remaining, period, last.turn, *shown)
         return None
+
+    def _repetitions(self, lag: int, count: int) -> tuple[list[float], Array]:
+        """Return times and shapes at so many repetitions back, and now, or as many as there are."""
+        kept = list(islice(reversed(self.returns), 0, count * lag + 1, lag))[::-1]
+        return [time for time, _ in kept], np.array([nodes for _, nodes in kept])
+
+    def _hovering(self, lag: int) -> float | None:
+        """Return how far shapes hover about one another that have long gone nowhere."""
+        times, shapes = self._repetitions(lag, MANY_REPETITIONS)
+        if len(times) <= MANY_REPETITIONS:
+            return None
+        early, late = np.split(self._changes(shapes[:-1], shapes[1:]), 2)
+        change = float(max(np.max(early), np.max(late)))
+        apart = float(np.max(self._changes(shapes[:-1], shapes[-1])))
+        if np.max(late) > HOVERING * np.max(early) or apart > HOVERING * change:
+            return None
+        return max(apart, change) if max(apart, change) <= TOLERANCE_IN_RTOL * self.rtol else None
 
     def periods(self, duration: float) -> tuple[float | None, float]:
         """Return the shortest and the longest period at work, of those within a duration [T]."""

@@ -9,12 +9,13 @@ every other sample, whenever there are twice as many as asked.
 import math
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
 
 from undula.analysis.alignment import comparison
+from undula.analysis.arrival import Arrival, Lookout
 from undula.analysis.recent import Recent, parts_of
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Pace, Settled, Watch
@@ -28,12 +29,13 @@ from undula.numerics.results import Status
 from undula.numerics.schemes import NDF
 from undula.numerics.system import RATES
 
-#: Steps and samples between two looks at the run: some milliseconds.
-MOST_STEPS, MOST_SAMPLES = 500, 256
+#: Steps and samples between two looks at the run: about a millisecond.
+MOST_STEPS, MOST_SAMPLES = 150, 256
 #: A run with this many samples a period needs no close-up.
 ENOUGH_A_PERIOD = 24.0
-#: Looks whose memory is kept, so that the last periods can be sampled again more finely.
-KEPT_MARKS = 400
+#: The memory is kept so often, and at looks so many steps apart, so that the last periods can be
+#: sampled again more finely.
+KEPT_MARKS, MARKED_STEPS = 400, 450
 
 
 @dataclass
@@ -53,6 +55,10 @@ class Simulation:
         of the turning rate, of the active power and of the dissipation.
     recent : Recent
         Samples at finer intervals, of the end so far.
+    arrival : Arrival or None
+        The state that a run to the solved one was left for.
+    tight_from : float or None
+        Time from which on its steps are more exact than was asked for, see `tighten` [T].
     shown_until : float
         A motion that has settled is shown until then, or until it has been seen often enough [T].
     """
@@ -64,6 +70,8 @@ class Simulation:
     rows: list[Array] = field(default_factory=list)
     ending: Ending = Ending.RUNNING
     settled: Settled | None = None
+    arrival: Arrival | None = None
+    tight_from: float | None = None
     shown_until: float = 0.0
     cause: str = ""
     recent: Recent = field(default_factory=Recent)
@@ -75,8 +83,9 @@ class Simulation:
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
         departure = self.model.departure(self.model.positions(first[:-RATES]))
         compare = comparison(axisymmetric=self.model.axisymmetric)
-        self.watch = Watch(self.schedule.rtol, departure, compare)
-        self.marks.append(_copied(self.memory))
+        self.watch = Watch(self.schedule.rtol, departure, compare, self.schedule.until == "solved")
+        self.lookout = Lookout(self.model)
+        self.marks.append(copied(self.memory))
 
     @classmethod
     def begin(cls, model: Model, x: State, schedule: Schedule) -> Self:
@@ -120,7 +129,7 @@ class Simulation:
     def advance(self) -> bool:
         """Go on for some milliseconds; return whether there is more to do."""
         last = math.ceil(self.schedule.end / self.interval - 1e-9)
-        ahead = np.arange(self.sampled, min(self.sampled + MOST_SAMPLES, last + 1))
+        ahead = np.arange(self.sampled, min(self.sampled + MOST_SAMPLES, self._enough(), last + 1))
         if ahead.size == 0:
             self.ending = self._last_ending()
             return False
@@ -128,7 +137,8 @@ class Simulation:
         noted = self._parts()
         parts = max(1, noted)
         fine = np.arange(self._first(parts), ahead[-1] * parts + 1)
-        states, sections = np.empty((fine.size, width)), np.empty((MOST_STEPS, 1 + width))
+        most = self.lookout.steps if self.schedule.until == "solved" else MOST_STEPS
+        states, sections = np.empty((fine.size, width)), np.empty((most, 1 + width))
         code, filled, found = advance(
             self.model.system,
             self.memory,
@@ -136,7 +146,7 @@ class Simulation:
             self.interval / parts * fine,
             states,
             sections,
-            MOST_STEPS,
+            most,
         )
         # A look may end long before all times are reached: what is kept is not to hold the rest.
         states = states if filled == fine.size else states[:filled].copy()
@@ -147,15 +157,16 @@ class Simulation:
         if status not in (Status.DONE, Status.PAUSED):
             self.ending, self.cause = Ending.FAILED, status.advice
             return False
-        self.marks.append(_copied(self.memory))
+        if self.memory.count[names.STEPS] >= self.marks[-1].count[names.STEPS] + MARKED_STEPS:
+            self.marks.append(copied(self.memory))
         shapes = self._nodes(sections[:found, 1:]) if found else ()
         self.watch.note(self._pace(), list(zip(sections[:found, 0].tolist(), shapes, strict=True)))
-        return self.schedule.until != "settled" or self._goes_on()
+        return not self.schedule.open_ended or self._goes_on()
 
     def _parts(self) -> int:
         """Return in how many parts an interval is sampled for the close-up; 0 if for none."""
         fast, _ = self.watch.periods(self.time)
-        if self.schedule.until != "settled" or fast is None or self.watch.turns_steadily():
+        if not self.schedule.open_ended or fast is None or self.watch.turns_steadily():
             return 0
         return parts_of(self.interval, fast, self.recent.interval)
 
@@ -172,14 +183,27 @@ class Simulation:
         known = math.floor(float(real[names.TIME] - real[names.STEP]) / interval) + 1
         return max(following, min(known, self.sampled * parts))
 
+    def _enough(self) -> int:
+        """Return how many samples are enough as far as is known: those of a motion as shown."""
+        if not self.schedule.open_ended or self.settled is None:
+            return np.iinfo(np.int64).max
+        until = max(self.settled.shown_until, self.shown_until)
+        return max(self.sampled, math.ceil(until / self.interval - 1e-9)) + 1
+
     def _last_ending(self) -> Ending:
         """Return the ending of a run whose time is over."""
-        if self.schedule.until != "settled":
+        if not self.schedule.open_ended:
             return Ending.DONE
         return Ending.SETTLED if self.settled else Ending.LIMIT
 
     def _goes_on(self) -> bool:
         """Judge whether the motion has settled and been shown; thin the samples of a long run."""
+        if self.schedule.until == "solved":
+            last = self.rows[-1][-1] if len(self.rows[-1]) else self.states[-1]
+            self.arrival = self.lookout.arrival(self.watch.paces, self.time, last[:-RATES])
+            if self.arrival:
+                self.ending = Ending.SOLVED
+                return False
         found = self.watch.settled()
         if found is None or self.settled is None:
             self.settled = found  # a motion that leaves again had not settled
@@ -191,6 +215,14 @@ class Simulation:
             self.rows = [self.states[::2].copy()]
             self.interval *= 2.0
         return True
+
+    def tighten(self, rtol: float) -> None:
+        """Go on with more exact steps, and begin anew to watch whether it settles."""
+        self.schedule = replace(self.schedule, rtol=rtol)
+        self.tight_from, self.settled, self.shown_until = self.time, None, 0.0
+        self.ending = Ending.RUNNING
+        self.marks.clear()  # whose steps were others
+        self.__post_init__()
 
     def _pace(self) -> Pace:
         real = self.memory.real
@@ -219,6 +251,8 @@ class Simulation:
         """Return all that `resume` needs, as arrays that stay as they are when the run goes on."""
         saved: dict[str, Any] = {"states": self.states, "interval": np.float64(self.interval)}
         saved["shown_until"] = np.float64(self.shown_until)
+        if self.tight_from is not None:
+            saved["tight"] = np.array([self.tight_from, self.schedule.rtol])
         saved |= {f"watch_{name}": array for name, array in self.watch.to_arrays().items()}
         for prefix, memory in (("memory", self.memory), ("mark", self.marks[0])):
             for name, array in memory._asdict().items():
@@ -232,9 +266,12 @@ class Simulation:
             Memory(*(np.array(saved[f"{prefix}_{name}"]) for name in Memory._fields))
             for prefix in ("mark", "memory")[::-1]
         )
+        since, rtol = saved.get("tight", (None, schedule.rtol))
+        schedule = replace(schedule, rtol=float(rtol))
         simulation = cls(
             model, schedule, memory, float(saved["interval"]), [np.array(saved["states"])]
         )
+        simulation.tight_from = None if since is None else float(since)
         simulation.shown_until = float(saved["shown_until"])
         simulation.marks.appendleft(mark)
         watched = ("seen", "paces", "return_times", "return_nodes")
@@ -242,36 +279,6 @@ class Simulation:
         return simulation
 
 
-def sampled_again(model: Model, schedule: Schedule, mark: Memory, times: Array) -> Array:
-    """Sample a part of a run once more, at other times.
-
-    Parameters
-    ----------
-    model, schedule
-        Those of the run.
-    mark : Memory
-        One of its marks.
-    times : ndarray, shape (m,)
-        Increasing times between the mark and the end of the run [T].
-
-    Returns
-    -------
-    ndarray, shape (m, n + RATES)
-        The very trajectory of the run, at these times.
-    """
-    memory = _copied(mark)
-    states = np.empty((times.size, memory.differences.shape[1]))
-    advance(
-        model.system,
-        memory,
-        schedule.options(model),
-        times,
-        states,
-        np.empty((0, 1 + states.shape[1])),
-        np.iinfo(np.int64).max,
-    )
-    return states
-
-
-def _copied(memory: Memory) -> Memory:
+def copied(memory: Memory) -> Memory:
+    """Return a memory that stays as it is when the run goes on."""
     return Memory(*(array.copy() for array in memory))

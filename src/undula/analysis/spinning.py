@@ -8,7 +8,7 @@ from undula.analysis.branches import Family
 from undula.analysis.linearisations import linearised
 from undula.analysis.onset import first_pair
 from undula.analysis.parameters import FORCE, changed
-from undula.analysis.relative_equilibrium import TurningShape, rotating_spectrum
+from undula.analysis.relative_equilibrium import TurningShape, turning_state
 from undula.analysis.run import Run
 from undula.analysis.states import NotFound, Spinning
 from undula.arrays import Array, Nodes
@@ -85,20 +85,7 @@ def spinning_start(model: Model) -> tuple[TurningShape, Point] | None:
 
 def spinning_state(problem: TurningShape, u: Array, p: float) -> Spinning:
     """Return the state that solves a problem, judged."""
-    model = changed(problem.model, problem.parameter, p)
-    y, rate = u[:-1], float(u[-1])
-    velocity, dragged = model.equations.turning(y)
-    left = model.equations.residual(y, rate * velocity)
-    values = rotating_spectrum(model, y, rate)
-    own = int(np.argmin(np.abs(values)))
-    return Spinning(
-        model=model,
-        unknowns=y,
-        rate=rate,
-        residual=float(np.abs(left).max() / np.abs(rate * dragged).max()),
-        exponents=np.delete(values, own),
-        trivial=complex(values[own]),
-    )
+    return turning_state(changed(problem.model, problem.parameter, p), u[:-1], float(u[-1]))
 
 
 def _shape_and_rate(guess: Run | Spinning) -> tuple[Nodes, float]:
@@ -106,7 +93,7 @@ def _shape_and_rate(guess: Run | Spinning) -> tuple[Nodes, float]:
         return guess.nodes, guess.rate
     turning = guess.rotation_frequency
     rate = 2.0 * np.pi * turning.value if turning else 0.0
-    return guess.motion.nodes[-1], rate
+    return guess.last_shape, rate
 
 
 def _solved_from(model: Model, nodes: Nodes, rate: float) -> Spinning | NotFound:

@@ -8,12 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
 
 from undula.analysis.alignment import aligned_distance, largest_distance
 from undula.analysis.observables import displacement
 from undula.analysis.planes import planarity
 from undula.analysis.spectral import hann
 from undula.arrays import Array, Shapes
+
+# Parts of a window that are compared one by one, and the least fall from the first to the last that
+# counts: beats cut at any place change the share of a motion that has settled by a hundredth.
+_PARTS, _SLOWEST = 4, 0.05
 
 
 @dataclass(frozen=True)
@@ -42,6 +49,17 @@ def shape_change(nodes: Shapes) -> Halves:
 def out_of_plane(nodes: Shapes) -> Halves:
     """How far the motion of nodes (m, N + 1, 3) is from a plane, one of its own in each half."""
     return _halves(nodes, planarity)
+
+
+def flattens(nodes: Shapes) -> bool:
+    """Tell whether the motion of nodes (m, N + 1, 3) comes nearer to a plane all the time.
+
+    From quarter to quarter, each with a plane of its own: a fall that is too slow to be seen from
+    one half to the other is seen by its going one way.
+    """
+    shares = [planarity(part) for part in np.array_split(nodes, _PARTS)]
+    falls = all(later < earlier for earlier, later in pairwise(shares))
+    return falls and shares[-1] < (1.0 - _SLOWEST) * shares[0]
 
 
 def swing(nodes: Shapes) -> Halves:

@@ -14,6 +14,7 @@ import numpy as np
 
 from undula.analysis.observables import as_shapes, transverse
 from undula.analysis.shape_sums import lowest_links
+from undula.analysis.turning_sums import link_turns
 from undula.arrays import Array, Indices, Shapes
 
 #: Way of a link's direction over which its turning is added up, in full turns: a swing to and fro
@@ -77,20 +78,17 @@ def winding(nodes: Shapes, chosen: Indices) -> Winding:
     chosen
         Indices of the links that are measured; the others are said not to turn.
     """
-    # An array for each coordinate, which is much faster than one for all three.
-    along = [nodes[:, chosen + 1, a] - nodes[:, chosen, a] for a in range(3)]
-    length = np.sqrt(sum(part * part for part in along))
-    x, y, z = (part / length for part in along)
-    across = [a[:-1] * b[1:] - b[:-1] * a[1:] for a, b in ((y, z), (z, x), (x, y))]
-    sine = np.sqrt(sum(part * part for part in across))
-    angle = np.arctan2(sine, sum(part[:-1] * part[1:] for part in (x, y, z)))
-    factor = np.divide(angle, sine, out=np.ones_like(sine), where=sine > 0.0)
-    turned = np.stack([factor * across[0], factor * across[1]], axis=2)
+    angle, turned = (
+        np.empty((len(chosen), len(nodes) - 1)),
+        np.empty((len(chosen), len(nodes) - 1, 2)),
+    )
+    link_turns(as_shapes(nodes), chosen, angle, turned)
     links = nodes.shape[1] - 1
     coherence, turns = np.zeros(links), np.zeros(links)
-    for i, link in enumerate(chosen):
-        spans = _spans(angle[:, i], turned[:, i])
-        if len(spans) >= FEWEST_SPANS and np.median(angle[:, i]) <= FOLLOWED:
+    far = angle.sum(axis=1) > 2.0 * np.pi * SPAN * FEWEST_SPANS
+    for i in np.flatnonzero(far).tolist():
+        spans, link = _spans(angle[i], turned[i]), chosen[i]
+        if len(spans) >= FEWEST_SPANS and np.median(angle[i]) <= FOLLOWED:
             coherence[link], turns[link] = np.median(spans), SPAN * np.sum(spans)
     return Winding(coherence, turns)
 

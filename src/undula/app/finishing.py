@@ -15,7 +15,7 @@ from undula.app.running import compute
 from undula.errors import InputError
 from undula.studies.store import load_result
 
-_ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.IRREGULAR, Ending.LIMIT)
+_ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.SOLVED, Ending.IRREGULAR, Ending.LIMIT)
 
 
 def finish(job: Job, *, budget: float, with_movie: bool, lyapunov: bool, as_json: bool) -> int:

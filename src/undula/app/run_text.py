@@ -43,9 +43,10 @@ def _lines(answer: Answer) -> Iterator[tuple[str, str]]:
 def _ended(answer: Answer) -> str:
     settled, start = answer["settled"], answer["window"][0]
     since = f", settled since t = {settled['since']:.4g} T" if settled else ""
+    whose = "of the solved state" if answer["solved"] else f"from t = {start:.4g} T on"
     return (
         f"{answer['status']} at t = {answer['time']:.4g} T{since}, after"
-        f" {duration(answer['seconds'])}; figures from t = {start:.4g} T on"
+        f" {duration(answer['seconds'])}; figures {whose}"
     )
 
 

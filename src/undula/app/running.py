@@ -76,7 +76,7 @@ class _Watcher:
 
     def __call__(self, progress: Progress) -> None:
         self.first = self.first or progress
-        settling = self.job.wanted.time.until == "settled"
+        settling = isinstance(self.job.wanted.time.until, str)
         self.show(part_done(progress), pace(progress, self.first, settling=settling))
         if progress.seconds >= self.next_save:
             spent = self._save()

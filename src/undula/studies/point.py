@@ -13,6 +13,7 @@ from undula.analysis.health import length_error, power_balance_error
 from undula.analysis.integrate import carry_on
 from undula.analysis.last_period import last_path, last_period
 from undula.analysis.record import dataset_of
+from undula.analysis.regimes import UNDECIDED
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending
 from undula.analysis.simulation import Simulation
@@ -30,6 +31,12 @@ from undula.studies.study_columns import LONGEST_TEXT
 
 #: Seconds that a piece of work should take: much longer than it is on its way.
 PIECE_SECONDS = 1.0
+#: Of a point that solved states decide these are the run's, and these the state's.
+_ERRORS = ("power_balance_error", "length_error")
+_SOLVED = (
+    *("frequency", "frequency_error", "energy_min", "energy_max", "energy_mean"),
+    *("tip_radius_min", "tip_radius_max", "planarity"),
+)
 #: The figures of a run hold these under the same names.
 _SAME = ("frequency", "frequency_error", "rotation_frequency", "shape_frequency", "planarity")
 _RANGES = {
@@ -83,7 +90,8 @@ def point(job: Mapping[str, Any]) -> dict[str, Any]:
     Parameters
     ----------
     job
-        ``tables``, the complete input; ``label`` and ``keep`` as in the table ``[study]``; and if
+        ``tables``, the complete input; ``label``, ``keep`` and, if not to keep it, ``undecided``
+        as in the table ``[study]``; and if
         the run begins with a neighbour's last shape: ``nodes``, its nodes (None for the start of
         the input), and ``kick``, the size [rad] and the seed of a random turn.
 
@@ -138,8 +146,28 @@ def _run(job: Mapping[str, Any]) -> dict[str, Any]:
     if simulation.ending is Ending.FAILED:
         return {"status": FAILED, "reason": simulation.cause, **ending}
     run = judged or Run.of(simulation)
-    last = {"nodes": run.motion.nodes[-1]} if "kick" in job else {}
-    return {"status": DONE, **ending, **_figures(run), **_kept(job["keep"], run, wanted), **last}
+    last = {"nodes": run.last_shape} if "kick" in job else {}
+    figures = _figures(run)
+    if job.get("undecided", "keep") == "solve":
+        figures = _decided(figures, model)
+    return {"status": DONE, **ending, **figures, **_kept(job["keep"], run, wanted), **last}
+
+
+def _decided(figures: dict[str, Any], model: Model) -> dict[str, Any]:
+    """Return the figures of a run, or those of the one stable state where it does not tell."""
+    if figures["verdict"] != UNDECIDED:
+        return {**figures, "decided_by": "run"}
+    solved = solved_record(model)
+    stable = [solved["verdict"], *filter(None, solved["also"].split(", "))]
+    if solved["verdict"] == UNDECIDED or len(stable) > 1:
+        states = "none of the solved states" if len(stable) == 1 else " and ".join(stable)
+        told = f"{figures['reason']}; {states} {'is' if len(stable) == 1 else 'are'} stable here"
+        return {**figures, "reason": told, "decided_by": "run"}
+    rate = f"its disturbances decay at {-solved['margin']:.4g}/T at least"
+    told = f"of the solved states this one alone is stable, {rate}; by its run: {figures['reason']}"
+    record = {name: figures[name] for name in _ERRORS} | {"verdict": stable[0], "reason": told}
+    quantities = {name: solved[name] for name in _SOLVED if solved[name] == solved[name]}
+    return {**record, **quantities, "decided_by": "solved states"}
 
 
 def _start(job: Mapping[str, Any], wanted: RunInput, model: Model) -> State:

@@ -210,7 +210,7 @@ def read_tables(
 def _times(given: Mapping[str, Any]) -> dict[str, float]:
     """Return the default times of a filament that the choices in an input leave a meaning."""
     fields, chosen = TimeTable.model_fields, given.get("time")
-    if isinstance(chosen, Mapping) and chosen.get("until") == "settled":
+    if isinstance(chosen, Mapping) and chosen.get("until") in ("settled", "solved"):
         return {"limit": fields["limit"].default}
     return {"until": fields["until"].default}
 

@@ -77,6 +77,11 @@ class Study:
         return str(self.settings.get("keep", "verdict"))
 
     @property
+    def undecided(self) -> str:
+        """What becomes of points whose runs do not tell."""
+        return str(self.settings.get("undecided", "keep"))
+
+    @property
     def whole_lines(self) -> bool:
         """Whether the points along the last axis are done together, in their order."""
         last = self.axes[-1]
@@ -106,6 +111,7 @@ class Study:
             "tables": self.tables(number),
             "label": self.label,
             "keep": self.keep,
+            "undecided": self.undecided,
         }
         if self.policy == "neighbour":
             job["kick"] = (self.settings["kick"], self._drawn(number)[0])

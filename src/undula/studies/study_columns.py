@@ -87,6 +87,8 @@ SOLVED = (
     _number("spinning_frequency", "frequency of the spinning state", "frequency"),
     _number("flapping_frequency", "frequency of the flapping state", "frequency"),
 )
+#: Of a study whose undecided points are decided by solved states.
+DECIDED = _text("decided_by", "what the verdict is from: 'run' or 'solved states'", 16)
 #: Of a study that keeps the last period, with the dimensions that its variables have besides.
 INNER: Mapping[str, tuple[str, ...]] = {
     "shape_times": ("shape",),
@@ -100,7 +102,8 @@ _OF_SHAPES = (
 )
 
 
-def columns_of(label: str, keep: str) -> tuple[Column, ...]:
+def columns_of(label: str, keep: str, undecided: str) -> tuple[Column, ...]:
     """Return the variables of a study, without its seeds."""
     solved = SOLVED if label == "solved" else ()
-    return (STATUS, *FIGURES, *solved, *(_OF_SHAPES if keep == "period" else ()))
+    decided = (DECIDED,) if undecided == "solve" else ()
+    return (STATUS, *FIGURES, *solved, *decided, *(_OF_SHAPES if keep == "period" else ()))

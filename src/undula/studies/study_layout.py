@@ -81,7 +81,7 @@ def _coordinates(study: Study) -> dict[str, np.ndarray[Any, Any]]:
 def _add_variables(group: zarr.Group, study: Study, model: Model) -> None:
     dims = (*(axis.key for axis in study.axes), TRY)
     lengths = {"shape": SHAPES, "instant": INSTANTS, "node": model.links + 1, "axis": 3}
-    columns = columns_of(study.label, study.keep)
+    columns = columns_of(study.label, study.keep, study.undecided)
     largest = 8
     if study.keep == "period":
         largest *= SHAPES * lengths["node"] * lengths["axis"]

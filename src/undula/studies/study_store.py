@@ -43,7 +43,7 @@ class StudyStore:
     def __init__(self, path: Path, study: Study) -> None:
         group = zarr.open_group(path, mode="r+", zarr_format=ZARR_FORMAT)
         self.path, self.study = path, study
-        self._columns = columns_of(study.label, study.keep)
+        self._columns = columns_of(study.label, study.keep, study.undecided)
         self._arrays: dict[str, Any] = {one.name: group[one.name] for one in self._columns}
         self.blocks = Blocks(study.shape, self._arrays[STATUS.name].chunks)
 

@@ -113,6 +113,9 @@ class StudyTable(Table):
     keep
         What is kept of a run: verdict and figures, its last ``"period"`` besides, or the whole
         ``"run"`` as a file of its own.
+    undecided
+        What becomes of a point whose run does not tell: it stays so (``"keep"``), or solved states
+        are asked (``"solve"``), and if just one of them is stable, that is the verdict.
     policy
         How a run begins: with the start of the input (``"same"``), with ``"random"`` shapes, or
         with what the ``"neighbour"`` before it along the last axis has come to.
@@ -135,6 +138,7 @@ class StudyTable(Table):
     label: Literal["runs", "solved"] = Field(default="runs", description="'runs' or 'solved'")
     keep: Keep = Field(default="verdict", description="'verdict', 'period' or 'run'")
     policy: Policy = Field(default="same", description="'same', 'random' or 'neighbour'")
+    undecided: Literal["keep", "solve"] = Field(default="keep", description="'keep' or 'solve'")
     tries: int = Field(default=1, ge=1, le=MOST_POINTS, description="a whole number of at least 1")
     seed: int = Field(default=1, ge=0, lt=2**63, description="a whole number from 0 to 2^63 - 1")
     amplitudes: Amplitudes = Field(
@@ -151,6 +155,7 @@ class StudyTable(Table):
     only_with: ClassVar[Mapping[str, OnlyWith]] = {
         "keep": OnlyWith("label", ("runs",)),
         "policy": OnlyWith("label", ("runs",)),
+        "undecided": OnlyWith("label", ("runs",)),
         "tries": OnlyWith("policy", ("random",)),
         "seed": OnlyWith("policy", ("random", "neighbour")),
         "amplitudes": OnlyWith("policy", ("random",)),

@@ -81,11 +81,13 @@ class TimeTable(Table):
     Attributes
     ----------
     until
-        Time at which the run ends, above 0, or ``"settled"``: until the motion repeats itself. By
-        default 1 for a filament; for a chain what corresponds to it, N^2.
+        Time at which the run ends, above 0; or ``"settled"``: until the motion repeats itself; or
+        ``"solved"``: until then at the latest, but only until a stable straight or spinning state
+        is found next to it, whose name and numbers it then has. By default 1 for a filament; for a
+        chain what corresponds to it, N^2.
     limit
-        Time at which a run to ``"settled"`` gives up, above 0. By default 10 for a filament, and
-        10 N^2 for a chain.
+        Time at which a run to ``"settled"`` or ``"solved"`` gives up, above 0. By default 10 for a
+        filament, and 10 N^2 for a chain.
     samples
         Number of stored times, at least 2.
     rtol
@@ -94,15 +96,17 @@ class TimeTable(Table):
         Absolute error tolerance of a step, radians, above 0.
     """
 
-    until: Annotated[float, Field(gt=0.0)] | Literal["settled"] = Field(
-        default=1.0, description="a number above 0 or 'settled'"
+    until: Annotated[float, Field(gt=0.0)] | Literal["settled", "solved"] = Field(
+        default=1.0, description="a number above 0, 'settled' or 'solved'"
     )
     limit: float = Field(default=10.0, gt=0.0, description="a number above 0")
     samples: int = Field(default=4000, ge=2, description="a whole number of at least 2")
     rtol: float = Field(default=1e-6, ge=1e-12, le=1e-2, description="a number from 1e-12 to 1e-2")
     atol: float = Field(default=1e-10, gt=0.0, description="a number above 0")
 
-    only_with: ClassVar[Mapping[str, OnlyWith]] = {"limit": OnlyWith("until", ("settled",))}
+    only_with: ClassVar[Mapping[str, OnlyWith]] = {
+        "limit": OnlyWith("until", ("settled", "solved"))
+    }
 
 
 class StabilityTable(Table):
