@@ -42,6 +42,9 @@ from undula.numerics.shooting import Shooting, Shot
 
 # A run without a guess begins with this kick [rad] and takes this long at most [T].
 _KICK, _LONGEST = 0.1, 5.0
+# A motion that turns back with less variation of its energy than this, over the mean, has become a
+# steady one.
+_STEADY = 0.01
 
 
 def find_periodic(model: Model, guess: Run | Periodic | None = None) -> Periodic | NotFound:
@@ -163,7 +166,15 @@ def follow_born(
     family = _family(state.model, problem, parameter, scale)
     # Born sideways: the first steps are short.
     steps = Steps(first=0.03, most=0.3, scale=scale)
-    return follow_branch(family, u, bifurcation.value, to, steps, progress, start=point)
+    return follow_branch(
+        family, u, bifurcation.value, to, steps, progress, enough=_dies, start=point
+    )
+
+
+def _dies(bifurcation: Bifurcation[Periodic]) -> bool:
+    """Tell whether a motion has become a steady one: what follows is the branch's mirror image."""
+    energy = bifurcation.state.energy
+    return bifurcation.kind == "fold" and energy.max - energy.min <= _STEADY * energy.mean
 
 
 def _in_space(state: Flapping) -> Array:

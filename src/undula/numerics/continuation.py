@@ -27,6 +27,8 @@ _SMALL, _MOST_ITERATIONS = 1e-7, 12
 _EASY, _GROWTH, _SHRINKAGE = 4, 2.0, 0.4
 # Cosine of the largest turn of the tangent in one step.
 _STRAIGHT = 0.5
+# How far beside a singular point another will do, in tolerances.
+_BESIDE = (0.0, 1.0, -1.0, 100.0, -100.0)
 
 
 @dataclass(frozen=True)
@@ -208,9 +210,8 @@ def located(
     def value(length: float) -> float:
         if length not in found:
             # At a branch point the equations are singular: one beside it is as good.
-            point = advance(problem, before, length, scale) or advance(
-                problem, before, length + tolerance, scale
-            )
+            beside = (advance(problem, before, length + k * tolerance, scale) for k in _BESIDE)
+            point = next(filter(None, beside), None)
             if point is None:
                 raise ArithmeticError
             found[length] = point
