@@ -20,7 +20,7 @@ from functools import cache
 
 from contenders import continuum, distance, kicks, page, push
 from contenders.orbits import FORCES
-from contenders.windows import BOUND, OURS, Timed, method_of, names, once, tolerance
+from contenders.windows import BOUND, OURS, STEP, Timed, method_of, names, once, tolerance
 
 QUICK = "--quick" in sys.argv
 MOTIONS = [motion for motion in FORCES if motion in sys.argv] or list(FORCES)
@@ -56,7 +56,7 @@ def first(name: str, motion: str, segments: int) -> Timed:
     while (tried := once(name, motion, segments, PERIODS, rtol)).frequency_error > BOUND:
         if rtol < 1e-9 or tried.best > LONGEST:
             break
-        rtol *= 10.0**-0.5
+        rtol *= STEP
     return tried
 
 

@@ -14,7 +14,8 @@ from contenders.textbook import Array, textbook
 #: Relative error of the frequency that all are allowed.
 BOUND = 5e-5
 #: Relative tolerances to choose from, and how often in a row one has to meet the bound.
-TOLERANCES = tuple(10.0 ** (-0.5 * k) for k in range(3, 17))
+STEP = 10.0 ** (-1.0 / 6.0)
+TOLERANCES = tuple(STEP**k for k in range(9, 49))
 IN_A_ROW = 3
 SAMPLES_A_PERIOD = 8
 OURS = {
