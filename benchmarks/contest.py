@@ -81,7 +81,7 @@ def window(motion: str, segments: int, before: dict[str, Timed]) -> dict[str, Ti
 
 def tell(one: Timed) -> None:
     """Print a line."""
-    told = f"{one.motion:9} {one.segments:4} {one.name:42} rtol {one.rtol:.0e} {one.best:10.4f} s"
+    told = f"{one.motion:9} {one.segments:4} {one.name:42} rtol {one.rtol:.1e} {one.best:10.4f} s"
     print(f"{told}  errors {one.frequency_error:.0e} {one.tip_error:.0e}", flush=True)
 
 
@@ -104,9 +104,9 @@ def cell(name: str, found: dict[str, Timed]) -> str:
         return "too long"
     over = "" if one.frequency_error <= BOUND else f", error {one.frequency_error:.0e}"
     if name in OURS:
-        return f"{1e3 * one.best:.3g} ms (median {1e3 * one.median:.3g}; {one.rtol:.0e}{over})"
+        return f"{1e3 * one.best:.3g} ms (median {1e3 * one.median:.3g}; {one.rtol:.1e}{over})"
     ratio = one.best / ours.best
-    return f"{ratio:{',.0f' if ratio >= 10 else '.2g'}} ({one.rtol:.0e}{over})"
+    return f"{ratio:{',.0f' if ratio >= 10 else '.2g'}} ({one.rtol:.1e}{over})"
 
 
 def compile_all() -> None:

@@ -93,6 +93,6 @@ def table(found: list[Kick]) -> str:
     rows = []
     for k in found:
         ratio, error = f"{k.seconds / ours:,.3g}", f"{k.tip_error:.0e}"
-        rows.append([k.name, f"{k.rtol:.0e}", f"{k.seconds:.3g} s", ratio, error])
+        rows.append([k.name, f"{k.rtol:.1e}", f"{k.seconds:.3g} s", ratio, error])
     heading = ["from a kick", "rtol", "time", "over undula as it comes", "largest error of the tip"]
     return page.table(heading, rows)
