@@ -311,8 +311,8 @@ def test_a_run_settles_to_the_state_that_is_solved_for(model: Filament) -> None:
     assert run.frequency is not None
     assert run.settled is not None
     assert abs(abs(run.frequency.value) - state.frequency) <= run.frequency.error
-    # What the run may still change by, in the displacement, and the errors of its steps; energy goes
-    # with their square.
+    # What the run may still change by, in the displacement, and the errors of its steps; energy
+    # goes with their square.
     left = 2.0 * (run.settled.remaining + run.schedule.rtol) * state.bending_energy
     assert run.window.energetics.bending_energy[-1] == pytest.approx(state.bending_energy, abs=left)
     assert_same(replace(found_from(model, run), rate=state.rate), state)
