@@ -68,7 +68,7 @@ def defect(order: int, kappa: Fraction, power: int) -> Fraction:
 
 def tabled_defect(scheme: BackwardDifferentiation, order: int, power: int) -> float:
     """Return the same from the table, whose differences are those at the old time."""
-    gamma, alpha, _ = scheme.tables()
+    gamma, alpha, _ = scheme.tables
     values = [Fraction(-i) ** power for i in range(order + 1, -1, -1)]
     old = values[:-1]
     ahead = values[-1] - sum(backward_difference(old, j) for j in range(order + 1))
@@ -101,7 +101,7 @@ def test_the_error_constant_is_the_formula_s_defect_on_the_next_power(
 ) -> None:
     kappa = PUBLISHED_KAPPA[scheme.name][order - 1]
     expected = -defect(order, kappa, order + 1) / factorial(order + 1)
-    assert scheme.tables()[2][order] == pytest.approx(float(expected), rel=1e-14)
+    assert scheme.tables[2][order] == pytest.approx(float(expected), rel=1e-14)
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -109,7 +109,7 @@ def test_the_error_constant_is_the_formula_s_defect_on_the_next_power(
 def test_the_stability_angle_follows_from_the_root_locus(
     scheme: BackwardDifferentiation, order: int
 ) -> None:
-    gamma, alpha, _ = scheme.tables()
+    gamma, alpha, _ = scheme.tables
     shift = np.exp(-1j * np.linspace(1e-3, np.pi, 20001))  # from y_{n+1} to y_n on the unit circle
     locus = alpha[order] * (1.0 - shift) ** (order + 1)
     locus += sum(gamma[j] * shift * (1.0 - shift) ** j for j in range(1, order + 1))

@@ -137,7 +137,7 @@ def under_way(model: Model) -> tuple[Memory, Options]:
     none = np.zeros((0, memory.differences.shape[0], told.mask.size))
     band = np.zeros((told.mask.size, 2 * derivative_half_bandwidth(type(model.system)) + 1))
     assert advance_with_changes(model.system, memory, told, none, band, FOREVER, 60) == 1
-    memory.real[PLANNED_FACTOR], memory.count[PLANNED_ORDER] = 0.25, 3
+    memory.real[PLANNED_FACTOR], memory.count[PLANNED_ORDER] = 0.2, 3
     told = always_accepting(told._replace(**EXACTLY))
     take_steps(advance_with_changes, model.system, memory, told, none, 1)
     return memory, told

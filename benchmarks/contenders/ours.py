@@ -22,9 +22,8 @@ def stepped(*, turning: bool) -> Ours:
     """
 
     def run(model: un.Filament, x: Array, times: Array, rtol: float) -> tuple[Array, Array]:
-        schedule = Schedule(rtol=rtol)
-        options = schedule.options(model)._replace(frame=int(turning))
-        memory = Simulation.begin(model, x, schedule).memory
+        begun = Simulation.begin(model, x, Schedule(rtol=rtol))
+        memory, options = begun.memory, begun.options._replace(frame=int(turning))
         states = np.empty((times.size, memory.differences.shape[1]))
         sections = np.empty((0, 1 + states.shape[1]))
         advance(model.system, memory, options, times, states, sections, _NEVER)

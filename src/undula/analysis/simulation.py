@@ -79,7 +79,7 @@ class Simulation:
 
     def __post_init__(self) -> None:
         """Make what follows from the rest."""
-        self._options = self.schedule.options(self.model)
+        self.options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
         departure = self.model.departure(self.model.positions(first[:-RATES]))
         compare = comparison(axisymmetric=self.model.axisymmetric)
@@ -142,7 +142,7 @@ class Simulation:
         code, filled, found = advance(
             self.model.system,
             self.memory,
-            self._options,
+            self.options,
             self.interval / parts * fine,
             states,
             sections,

@@ -15,18 +15,20 @@ from undula.numerics.memory import (
     SHAPE_SPEED,
     SPEED,
     STEP,
+    STEPS,
 )
 from undula.numerics.system import rotate, size
 
 #: A step is made this much shorter than its error estimate would allow.
-SAFETY = 0.85
+SAFETY = 0.8
 #: No step is shortened by more after an error, or lengthened by more after a success.
 SHORTEST_FACTOR, LONGEST_FACTOR = 0.2, 10.0
 #: A change of length by less is not worth a new matrix.
 WORTHWHILE = 1.1
 #: The frame turns along when less than this part of the speed is a change of shape, in so many
-#: steps on end, and stops when more than the other part is.
-ENGAGE_BELOW, RELEASE_ABOVE, VOTES = 0.3, 0.8, 10
+#: looks on end, and stops when more than the other part is. There is a look after so many steps.
+ENGAGE_BELOW, RELEASE_ABOVE, VOTES = 0.3, 0.8, 3
+STEPS_A_LOOK = 4
 
 
 @kernel
@@ -70,9 +72,14 @@ def accept(memory: Any, work: Any) -> None:
     for i in range(differences.shape[1]):
         differences[order + 2, i] = work.change[i] - differences[order + 1, i]
         differences[order + 1, i] = work.change[i]
-    for j in range(order, -1, -1):
+    for j in range(order, 0, -2):  # two differences at a time: memory is what it waits for
         for i in range(differences.shape[1]):
-            differences[j, i] += differences[j + 1, i]
+            sum_ = differences[j, i] + differences[j + 1, i]
+            differences[j, i] = sum_
+            differences[j - 1, i] += sum_
+    if order % 2 == 0:
+        for i in range(differences.shape[1]):
+            differences[0, i] += differences[1, i]
     memory.count[EQUAL_STEPS] += 1
 
 
@@ -110,8 +117,17 @@ def factor_for(error: Any, order: Any) -> Any:
 
 
 @kernel
+def looks(memory: Any, options: Any) -> Any:
+    """Tell whether the speeds after the last step are going to be looked at."""
+    counts = memory.count
+    return options.frame == 1 and (counts[IN_FRAME] == 1 or counts[STEPS] % STEPS_A_LOOK == 0)
+
+
+@kernel
 def choose_frame(system: Any, memory: Any) -> None:
     """Enter or leave the co-rotating frame when the share of the shape in the speed says so."""
+    if memory.count[STEPS] % STEPS_A_LOOK > 0:
+        return
     in_frame = memory.count[IN_FRAME] == 1
     share = memory.real[SHAPE_SPEED] / memory.real[SPEED] if memory.real[SPEED] > 0.0 else 1.0
     votes = share > RELEASE_ABOVE if in_frame else share < ENGAGE_BELOW

@@ -19,6 +19,7 @@ from undula.numerics.control import (
     change_step,
     choose_frame,
     factor_for,
+    looks,
     plan,
 )
 from undula.numerics.memory import (
@@ -108,20 +109,26 @@ def step_error(system: Any, memory: Any, options: Any, work: Any) -> Any:
 
 
 @kernel
-def note_rates(system: Any, memory: Any, options: Any, work: Any) -> None:
-    """Note how fast the system moves, turns, changes shape and stores energy after a step."""
+def note_rates(memory: Any, options: Any, work: Any) -> None:
+    """Note how fast the system turns and stores energy after a step."""
     n, c = work.y.shape[0], memory.real[STEP] / options.alpha[memory.count[ORDER]]
-    rate = (work.change[n] + work.psi[n]) / c
-    generator(system, work.y, work.turning)
-    memory.real[TURN_RATE] = rate
-    memory.real[SPEED] = size(system, work.w, options.mask) / c
-    for i in range(n):
-        work.w[i] -= c * rate * work.turning[i]
-        work.y[i] -= options.reference[i]
-    memory.real[SHAPE_SPEED] = size(system, work.w, options.mask) / c
-    memory.real[DISPLACEMENT] = size(system, work.y, options.mask)
+    memory.real[TURN_RATE] = (work.change[n] + work.psi[n]) / c
     stored = work.change[n + 1] - work.change[n + 2] + work.psi[n + 1] - work.psi[n + 2]
     memory.real[STORING_RATE] = stored / c
+
+
+@kernel
+def note_speeds(system: Any, memory: Any, options: Any, work: Any) -> None:
+    """Note how fast the system moves and changes shape, and how far it is out, after a step."""
+    n, c = work.y.shape[0], memory.real[STEP] / options.alpha[memory.count[ORDER]]
+    turn = c * memory.real[TURN_RATE]
+    generator(system, work.y, work.turning)
+    memory.real[SPEED] = size(system, work.w, options.mask) / c
+    for i in range(n):
+        work.turning[i] = work.w[i] - turn * work.turning[i]
+        work.correction[i] = work.y[i] - options.reference[i]
+    memory.real[SHAPE_SPEED] = size(system, work.turning, options.mask) / c
+    memory.real[DISPLACEMENT] = size(system, work.correction, options.mask)
 
 
 @entry
@@ -181,16 +188,20 @@ def step_on(
         while filled < times.shape[0] and times[filled] <= memory.real[TIME]:
             interpolate(system, memory, times[filled], states[filled])
             filled += 1
-        if filled == times.shape[0]:
+        done = filled == times.shape[0]
+        paused = taken == most_steps or found == sections.shape[0] > 0
+        if taken > 0 and (done or paused or looks(memory, options)):
+            note_speeds(system, memory, options, work)
+        if done:
             return _DONE, filled, found
-        if taken == most_steps or found == sections.shape[0] > 0:
+        if paused:
             return _PAUSED, filled, found
         status = take_step(system, memory, options, work)
         if status != _DONE:
             return status, filled, found
         taken += 1
         storing = memory.real[STORING_RATE]
-        note_rates(system, memory, options, work)
+        note_rates(memory, options, work)
         if storing > 0.0 >= memory.real[STORING_RATE] and found < sections.shape[0]:
             sections[found, 0] = energy_maximum(memory)
             interpolate(system, memory, sections[found, 0], sections[found, 1:])

@@ -12,6 +12,7 @@ some cost in stability. Source: Shampine & Reichelt, SIAM J. Sci. Comput. 18 (19
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,8 +39,9 @@ class BackwardDifferentiation:
         """Highest order of the family."""
         return len(self.kappa)
 
+    @cached_property
     def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return gamma, alpha = (1 - kappa) gamma and the error constants, indexed by order.
+        """Gamma, alpha = (1 - kappa) gamma and the error constants, indexed by order.
 
         Index 0 is a placeholder; the error constants go on to max order + 1 with kappa = 0.
         """

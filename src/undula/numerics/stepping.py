@@ -56,7 +56,7 @@ DIVERGENCE = 2.0
 #: What a converging iteration may leave, as a fraction of the error allowed in a step.
 NEWTON_FRACTION = 0.05
 #: A contraction that is used unmeasured grows by this factor a step.
-CONTRACTION_AGEING = 1.5
+CONTRACTION_AGEING = 1.2
 #: Constraints are met to this many rtol.
 CONSTRAINT_IN_RTOL = 2.0
 #: The remembered contraction is forgotten at most this fast.
@@ -90,7 +90,7 @@ def options(
     frame: bool,
 ) -> Options:
     """Gather the options of a stepper of `scheme`."""
-    gamma, alpha, error = scheme.tables()
+    gamma, alpha, error = scheme.tables
     return Options(
         rtol, atol, mask, reference, stale_after, longest_step, int(frame), gamma, alpha, error
     )
