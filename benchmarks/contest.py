@@ -25,7 +25,7 @@ from contenders.windows import BOUND, OURS, STEP, Timed, method_of, names, once,
 QUICK = "--quick" in sys.argv
 MOTIONS = [motion for motion in FORCES if motion in sys.argv] or list(FORCES)
 SEGMENTS = (20, 40) if QUICK else (20, 40, 100, 200)
-PERIODS = 3 if QUICK else 5
+PERIODS = 3 if QUICK else 10
 #: A run that is expected to take longer is left out [s].
 LONGEST = 5.0 if QUICK else 30.0
 #: Seconds that the repetitions of a contender may take together, and how many there are at most.

@@ -15,6 +15,7 @@ import numpy as np
 from undula.analysis.evidence import GROWTH_FACTOR
 from undula.analysis.judging import Exponents
 from undula.analysis.late import PLANAR_TOLERANCE
+from undula.analysis.naming import leaves_its_plane
 from undula.analysis.regimes import UNDECIDED
 from undula.analysis.returns import RECURRENT
 from undula.analysis.run import Run
@@ -150,7 +151,7 @@ def _settled(simulation: Simulation) -> Run | None:
     if simulation.ending is not Ending.SETTLED:
         return None
     run, settled = Run.of(simulation), simulation.settled
-    if settled and settled.brief and run.verdict.name != BRIEFLY_TOLD:
+    if settled and settled.brief and not _briefly_told(run, settled):
         if settled.brief == 1 and simulation.schedule.rtol > TIGHT:
             simulation.tighten(TIGHT)
             return None
@@ -162,12 +163,19 @@ def _settled(simulation: Simulation) -> Run | None:
     return run
 
 
+def _briefly_told(run: Run, settled: Settled) -> bool:
+    """Tell whether a run shows enough to be named; what leaves its plane has no name yet."""
+    # That is a part of judging it which is told for far less than the whole.
+    unrest = leaves_its_plane(run.since(settled.since).nodes)
+    return not unrest and run.verdict.name == BRIEFLY_TOLD
+
+
 def _shown_again(settled: Settled, run: Run) -> Settled:
     """Return a motion that was shown too briefly as it is to be shown next: later, then longer."""
     if settled.brief == 1:
         return replace(settled, cycles=SHOWN_CYCLES, brief=0)
     half = 0.5 * (float(run.motion.time[-1]) - settled.since)
-    since = settled.since + half * (1.0 + _until_flat(out_of_plane(run.window.nodes)))
+    since = settled.since + half * (1.0 + _until_flat(out_of_plane(run.since(settled.since).nodes)))
     return replace(settled, since=since, brief=settled.brief - 1)
 
 

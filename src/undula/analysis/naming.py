@@ -24,6 +24,7 @@ from undula.analysis.naming_held import ASIDE, held_name, rests
 from undula.analysis.returns import RECURRENT, STEADY_FACTOR
 from undula.analysis.trends import flattens, out_of_plane, shape_change, swing
 from undula.analysis.window import STATIONARY
+from undula.arrays import Shapes
 
 # Share out of the plane below which a beat in a turning plane still is one.
 PRECESSING_TOLERANCE = 0.2
@@ -91,7 +92,7 @@ def flaps(late: Late) -> Name | None:
         f"periodic over {seen.periods:.3g} periods with {seen.planarity:.2g} of the motion out of"
         " its plane",
         below((seen.planarity, PLANAR_TOLERANCE), (seen.misfit, PERIODIC_TOLERANCE)),
-        _leaves_its_plane(late),
+        leaves_its_plane(late.nodes),
     )
 
 
@@ -147,16 +148,16 @@ def _settles(late: Late) -> str:
     change = swing(late.nodes).difference
     if change > STATIONARY:
         return f"its swing changes by {change:.1%} between halves of the window"
-    return _leaves_its_plane(late)
+    return leaves_its_plane(late.nodes)
 
 
-def _leaves_its_plane(late: Late) -> str:
-    """Tell whether what is out of the plane grows, or is on its way back to it."""
-    share = out_of_plane(late.nodes)
+def leaves_its_plane(nodes: Shapes) -> str:
+    """Tell whether what nodes (m, N + 1, 3) have out of their plane grows, or falls back to it."""
+    share = out_of_plane(nodes)
     if share.grows(GROWTH_FACTOR, VISIBLE * PLANAR_TOLERANCE):
         return f"it leaves its plane, by {share.first:.2g} and then {share.last:.2g} of itself"
     if share.first > PLANAR_TOLERANCE and (
-        share.first > GROWTH_FACTOR * share.last or flattens(late.nodes)
+        share.first > GROWTH_FACTOR * share.last or flattens(nodes)
     ):
         return f"it settles into a plane, {share.first:.2g} and then {share.last:.2g} off it"
     return ""

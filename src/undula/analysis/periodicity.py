@@ -72,9 +72,10 @@ def _basis(time: Instants, frequency: float, orders: list[int]) -> Array:
 
 def _resolved_orders(samples: int, cycles_per_sample: float) -> list[int]:
     """Harmonics, lowest first, that fold to places of their own."""
+    cycles = [difference * cycles_per_sample for difference in range(2 * MAX_HARMONICS + 1)]
+    apart = [abs(each - round(each)) * samples >= RESOLUTION for each in cycles]
     chosen = [0]
     for order in (sign * k for k in range(1, MAX_HARMONICS + 1) for sign in (1, -1)):
-        apart = [(order - other) * cycles_per_sample for other in chosen]
-        if min(abs(cycles - round(cycles)) for cycles in apart) * samples >= RESOLUTION:
+        if all(apart[abs(order - other)] for other in chosen):
             chosen.append(order)
     return chosen

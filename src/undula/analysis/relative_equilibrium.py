@@ -49,7 +49,7 @@ class TurningShape:
     reference: Array
     rate_scale: float
 
-    @property
+    @cached_property
     def weights(self) -> Array:
         """A mean square of positions, and the square of the rate relative to its scale."""
         moves = self.model.equations.differential
@@ -70,28 +70,29 @@ class TurningShape:
         y, rate, equations = u[:-1], float(u[-1]), model.equations
         velocity, dragged = equations.turning(y)
         matrix, _ = equations.parts(y, rate * velocity, rate)
-        phase = self._phase(velocity)
-        linear = BorderedBand(
-            matrix,
-            dragged[:, None],
-            phase[None, :],
-            np.zeros((1, 1)),
-            soft=int(np.argmax(np.abs(phase))),
-        )
-        residual = equations.residual(y, rate * velocity)
-        return np.append(residual, phase @ y), linear
-
-    def _phase(self, velocity: Array) -> Array:
-        """Return the unit vector along which the reference turns; refuse a straight shape."""
-        phase = self.model.equations.turning(self.reference)[0]
-        size = float(np.linalg.norm(phase))
-        across = np.sqrt(np.count_nonzero(self.model.equations.differential))
-        if size == 0.0 or phase @ velocity < _STRAIGHT * size * across:
+        phase, soft, least = self._phase
+        if phase @ velocity < least:
             raise InputError(
                 "a straight shape turns at any rate, so that no spinning state is near it;"
                 " begin with one that is bent"
             )
-        return np.asarray(phase / size)
+        linear = BorderedBand(matrix, dragged[:, None], phase[None, :], np.zeros((1, 1)), soft=soft)
+        residual = equations.residual(y, rate * velocity)
+        return np.append(residual, phase @ y), linear
+
+    @cached_property
+    def _phase(self) -> tuple[Array, int, float]:
+        """The unit vector (n,) along which the reference turns, and where it is the largest.
+
+        Then how much of its own turning a shape has along it at least if it is not to pass for
+        straight; along that of a straight reference none has any.
+        """
+        equations = self.model.equations
+        phase = equations.turning(self.reference)[0]
+        size = float(np.linalg.norm(phase))
+        across = float(np.sqrt(np.count_nonzero(equations.differential)))
+        unit = phase / size if size > 0.0 else phase
+        return unit, int(np.argmax(np.abs(unit))), _STRAIGHT * across
 
     def _by_parameter(self, y: Array, rate: float, p: float) -> Array:
         below, above, width = neighbours(self.model, self.parameter, p)

@@ -103,6 +103,10 @@ class Run:
         """How well it was computed."""
         return health_of(self.model, self.motion, self.checkpoint)
 
+    def since(self, time: float) -> Motion:
+        """Return the part of the run from a time on at intervals that a motion is named from."""
+        return (self.motion if self.closer is None else self.closer.motion).late(time)
+
     @property
     def verdict(self) -> Verdict:
         """What the run ends in."""

@@ -208,6 +208,10 @@ class LinkedRod(ABC):
 
     def straight(self) -> State:
         """Return the straight state along the axis, an equilibrium; extensible links are short."""
+        return self._straight.copy()
+
+    @cached_property
+    def _straight(self) -> State:
         system = self.system
         carried = np.cumsum((system.head + np.append(system.foot[1:], 0.0))[::-1])[::-1]
         x = np.zeros((self.links, self.dimension))
@@ -237,8 +241,8 @@ class LinkedRod(ABC):
         return nodes[1:, self._axes].ravel()
 
     @property
-    def _axes(self) -> list[int]:
-        return [0, 1, 2] if self.dimension == 3 else [0, 2]
+    def _axes(self) -> slice:
+        return slice(None, None, 1 if self.dimension == 3 else 2)
 
     def rotate(self, x: State, angle: float) -> State:
         """Return the state turned about the axis by an angle [rad]; a confined model refuses."""

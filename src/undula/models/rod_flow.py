@@ -62,10 +62,10 @@ class RodFlow:
     def parts(self, y: Array, w: Array, turn: float) -> tuple[Array, Array]:
         """Return bands (n, 2 b + 1) of d residual / dy, plus `turn` R S, and of R."""
         whole = np.empty((y.size, 2 * self.half_bandwidth + 1))
-        drag, moves = np.empty_like(whole), self.differential
+        drag, d = np.empty_like(whole), int(self.system.dimension)
         exact_derivative(self.system, y, w, 1.0, turn, whole)
         exact_derivative(self.system, y, np.zeros(y.size), 0.0, 0.0, drag)
-        drag[~moves] = 0.0
+        drag.reshape(-1, self.stride, drag.shape[1])[:, d:] = 0.0
         whole -= drag
         return whole, drag
 
@@ -99,7 +99,8 @@ class RodFlow:
             return np.eye(y.size)[:, moves]
         links = np.diff(y.reshape(-1, m)[:, :d], axis=0, prepend=0.0)
         count = links.shape[0]
+        across = np.linalg.svd(links[:, None, :])[2][:, 1:, :]
+        # What turns a link moves all nodes from its outer end on.
         raw = np.zeros((count, m, count, d - 1))
-        for k, across in enumerate(np.linalg.svd(links[:, None, :])[2][:, 1:, :]):
-            raw[k:, :d, k, :] = across.T
+        raw[:, :d] = np.tri(count)[:, None, :, None] * across.transpose(2, 0, 1)
         return np.asarray(np.linalg.qr(raw.reshape(y.size, -1))[0])

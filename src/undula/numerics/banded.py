@@ -170,8 +170,8 @@ def to_dense(band: np.ndarray) -> np.ndarray:
     """Return the (n, n) matrix that `band` (n, 2 b + 1) holds."""
     n, width = band.shape
     b = width // 2
-    dense = np.zeros((n, n))
-    for offset in range(-b, b + 1):
-        rows = np.arange(max(0, -offset), min(n, n - offset))
-        dense[rows, rows + offset] = band[rows, b + offset]
-    return dense
+    # Rows with room for what sticks out of them, read as ones that are shorter by an entry: so each
+    # begins one column farther to the right than the row above.
+    sheared = np.zeros((n, n + width))
+    sheared[:, :width] = band
+    return sheared.ravel()[:-n].reshape(n, -1)[:, b : n + b]

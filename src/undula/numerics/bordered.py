@@ -18,13 +18,13 @@ from undula.arrays import Array
 
 def to_lapack(band: Array) -> Array:
     """Return band (n, 2 b + 1), stored by rows, in LAPACK's storage (3 b + 1, n) for `dgbtrf`."""
-    n, width = band.shape
-    b = width // 2
-    stored = np.zeros((3 * b + 1, n), order="F")
-    for offset in range(max(-b, 1 - n), min(b, n - 1) + 1):
-        rows = slice(max(0, -offset), min(n, n - offset))
-        stored[2 * b - offset, rows.start + offset : rows.stop + offset] = band[rows, b + offset]
-    return stored
+    n, b = band.shape[0], band.shape[1] // 2
+    # Columns on either side take what rows stick out by. In memory the next entry of a row is 3 b
+    # numbers on, the same of the next row 3 b + 1.
+    columns = np.zeros((n + 2 * b, 3 * b + 1))
+    one, over = columns.itemsize, 3 * b * columns.itemsize
+    np.ndarray(band.shape, buffer=columns, offset=over, strides=(over + one, over))[:] = band
+    return columns[b : n + b].T
 
 
 class BandFactors:
@@ -43,7 +43,9 @@ class BandFactors:
 
     def __init__(self, band: Array) -> None:
         self._b = band.shape[1] // 2
-        self._factors, self._pivots, info = lapack.dgbtrf(to_lapack(band), self._b, self._b)
+        self._factors, self._pivots, info = lapack.dgbtrf(
+            to_lapack(band), self._b, self._b, overwrite_ab=True
+        )
         if info != 0:
             raise ZeroDivisionError(f"pivot {info} of a banded matrix vanishes")
 
@@ -83,14 +85,12 @@ class BorderedBand:
 
     def _soften(self, soft: int, stiffness: float) -> None:
         """Add the border that takes the stiffness off again: z = x[soft]."""
-        unit = np.zeros(self._n)
-        unit[soft] = 1.0
-        self._columns = np.column_stack([self._columns, -stiffness * unit])
-        self._rows = np.vstack([self._rows, unit])
         q = self._corner.shape[0]
+        columns, rows = np.zeros((self._n, q + 1)), np.zeros((q + 1, self._n))
         corner = np.zeros((q + 1, q + 1))
-        corner[:q, :q], corner[q, q] = self._corner, -1.0
-        self._corner = corner
+        columns[:, :q], rows[:q], corner[:q, :q] = self._columns, self._rows, self._corner
+        columns[soft, q], rows[q, soft], corner[q, q] = -stiffness, 1.0, -1.0
+        self._columns, self._rows, self._corner = columns, rows, corner
 
     def solve(
         self, column: Array, row: Array, corner: float, right: Array, last: float
@@ -98,14 +98,15 @@ class BorderedBand:
         """Return x and y of the system with one more column and row, see `numerics.problem`."""
         n, q = self._n, self._corner.shape[0]
         given = column.size - n
-        columns = np.column_stack([self._columns, column[:n]])
-        rows = np.vstack([self._rows, row[:n]])
-        whole = np.zeros((q + 1, q + 1))
+        # The border, and the right-hand side beside it.
+        rows, whole = np.empty((q + 1, n)), np.zeros((q + 1, q + 2))
+        rows[:q], rows[q] = self._rows, row[:n]
         whole[:q, :q], whole[:given, q], whole[q, :given] = self._corner, column[n:], row[n:]
-        whole[q, q] = corner
-        solved = self._factors.solve(np.column_stack([columns, right[:n]]))
-        sides = np.zeros(q + 1)
-        sides[:given], sides[q] = right[n:], last
-        small = np.linalg.solve(whole - rows @ solved[:, :-1], sides - rows @ solved[:, -1])
+        whole[q, q], whole[:given, -1], whole[q, -1] = corner, right[n:], last
+        columns = np.empty((n, q + 2), order="F")
+        columns[:, :q], columns[:, q], columns[:, -1] = self._columns, column[:n], right[:n]
+        solved = self._factors.solve(columns)
+        reduced = whole - rows @ solved
+        small = np.linalg.solve(reduced[:, :-1], reduced[:, -1])
         x = solved[:, -1] - solved[:, :-1] @ small
         return np.concatenate([x, small[:given]]), float(small[q])

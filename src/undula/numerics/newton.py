@@ -5,6 +5,7 @@ to it. A step that makes the residual grow is halved until it does not; steps in
 quadratic convergence are left alone, as the residual may be nothing but round-off there.
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
@@ -68,7 +69,7 @@ def newton(problem: Problem, u: Array, p: float) -> Solution:
         step = _full_step(at)
         if step is None:
             return Solution(Convergence.SINGULAR, u, tuple(steps), _norm(at))
-        size = float(np.sqrt(np.sum(problem.weights * step**2)))
+        size = math.sqrt(problem.weights @ step**2)
         part = 1.0 / max(1.0, size)
         for _ in range(_MOST_HALVINGS):
             tried = problem.evaluate(u + part * step, p)
@@ -96,4 +97,4 @@ def _full_step(at: Evaluation) -> Array | None:
 
 
 def _norm(at: Evaluation) -> float:
-    return float(np.linalg.norm(at.residual))
+    return math.sqrt(at.residual @ at.residual)

@@ -162,8 +162,9 @@ class ModelTable(Table):
 
     @model_validator(mode="after")
     def _directors_have_room(self) -> Self:
-        if self.kind != "filament":
-            return self
+        directors = self.natural_curvature, self.bending_ratio
+        if self.kind != "filament" or directors == ((0.0, 0.0), 1.0):
+            return self  # there are none, or they do not matter
         try:
             Filament(
                 segments=self.segments,
