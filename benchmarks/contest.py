@@ -27,7 +27,7 @@ MOTIONS = [motion for motion in FORCES if motion in sys.argv] or list(FORCES)
 SEGMENTS = (20, 40) if QUICK else (20, 40, 100, 200)
 PERIODS = 3 if QUICK else 10
 #: A run that is expected to take longer is left out [s].
-LONGEST = 5.0 if QUICK else 30.0
+LONGEST = 5.0 if QUICK else 45.0
 #: Seconds that the repetitions of a contender may take together, and how many there are at most.
 TOGETHER, REPEATED = (1.0, 3) if QUICK else (3.0, 7)
 #: From how many segments on tolerances are no longer chosen anew.
