@@ -110,7 +110,7 @@ class Scales:
         return value * self._unit(quantity)
 
     def from_si(self, quantity: Quantity, value: float) -> float:
-        """Return the dimensionless number of an SI value, the inverse of :meth:`to_si`.
+        """Return the dimensionless number of an SI value, the inverse of `to_si`.
 
         Parameters
         ----------

@@ -27,7 +27,7 @@ class ModelInput(Table):
     ----------
     model, load
         What moves, and what pushes it. Every key has a value; one that has no meaning under the
-        choices made holds its default and is left out of :meth:`dump`.
+        choices made holds its default and is left out of `dump`.
     """
 
     model: ModelTable = Field(default=ModelTable(), description="a table")
@@ -89,7 +89,7 @@ class ModelInput(Table):
         -------
         dict
             Table name to keys and values, without the keys that have no meaning under the
-            choices made. :func:`parse_input` turns it back into an equal record.
+            choices made. `parse_input` turns it back into an equal record.
         """
         return {name: getattr(self, name).dump() for name in type(self).model_fields}
 

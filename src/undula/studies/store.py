@@ -77,17 +77,17 @@ def write_run(
 
 
 def run_image(dataset: xr.Dataset, checkpoint: Mapping[str, npt.NDArray[Any]]) -> bytes:
-    """Return the bytes of the file that :func:`write_run` writes."""
+    """Return the bytes of the file that `write_run` writes."""
     return _image(RUN, dataset, checkpoint)
 
 
 def write_result(path: Path, dataset: xr.Dataset, kind: Kind, *, overwrite: bool = False) -> None:
-    """Write a result of another kind, without a checkpoint, as :func:`write_run` does."""
+    """Write a result of another kind, without a checkpoint, as `write_run` does."""
     write_whole(path, _image(kind, dataset), overwrite=overwrite)
 
 
 def read_result(path: Path, kind: Kind) -> xr.Dataset:
-    """Read a result of another kind, as :func:`load_result` does."""
+    """Read a result of another kind, as `load_result` does."""
     return _read(path, kind)
 
 
@@ -97,7 +97,7 @@ def load_result(path: Path | str) -> xr.Dataset:
     Parameters
     ----------
     path
-        A file written by :func:`write_run`.
+        A file written by `write_run`.
 
     Returns
     -------
@@ -118,7 +118,7 @@ def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
     Parameters
     ----------
     path
-        A file written by :func:`write_run`.
+        A file written by `write_run`.
 
     Returns
     -------
