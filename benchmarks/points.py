@@ -30,7 +30,9 @@ from pathlib import Path
 import numpy as np
 
 import undula as un
+from undula.analysis.fundamental import Frequency
 from undula.analysis.integrate import carry_on
+from undula.analysis.regimes import Verdict
 from undula.analysis.run import Run
 from undula.analysis.simulation import Simulation
 from undula.studies.build import build_model, build_schedule, build_start
@@ -41,8 +43,9 @@ UNDULA = ("-c", "import sys; from undula.app.cli import main; sys.exit(main())")
 SEGMENTS, LEAST, LARGEST = 20, 30.0, 300.0
 #: Samples of a run, as few as a sweep needs.
 SAMPLES = 400
-#: Each point is done so often: the quickest is not one that another program has slowed down.
-TIMES = 5
+#: All points are done in so many rounds: the quickest time of each is not one of a minute in which
+#: other programs have slowed the machine down.
+ROUNDS = 9
 DIAGRAM = """
 [model]
 segments = 20
@@ -102,7 +105,9 @@ class Point:
     """A point as it was named, and the quickest of its times."""
 
     force: float
-    run: Run
+    verdict: Verdict
+    frequency: Frequency | None
+    steps: int
     timing: Timing
 
 
@@ -136,17 +141,23 @@ def timed(force: float, way: Way) -> Point:
     marks.append(time.process_time())
     build, running, figures = (1e3 * np.diff(marks)).tolist()
     steps = 1e3 * vars(simulation)["spent"]
-    return Point(force, run, Timing(build, steps, running - steps, figures))
+    timing = Timing(build, steps, running - steps, figures)
+    return Point(force, run.verdict, run.frequency, run.health.steps, timing)
 
 
 def done(count: int, way: Way) -> list[Point]:
-    """Do points at forces that are drawn evenly, each several times."""
-    forces = np.random.default_rng(1).uniform(LEAST, LARGEST, count)
+    """Do points at forces that are drawn evenly, each in every round."""
+    forces = np.sort(np.random.default_rng(1).uniform(LEAST, LARGEST, count)).tolist()
     timed(75.0, way), timed(250.0, way)  # by now the kernels are there
-    return [
-        min((timed(force, way) for _ in range(TIMES)), key=lambda point: point.timing.total)
-        for force in np.sort(forces).tolist()
-    ]
+    points = [timed(force, way) for force in forces]
+    for _ in range(ROUNDS - 1):
+        points = [quicker(point, timed(point.force, way)) for point in points]
+    return points
+
+
+def quicker(one: Point, other: Point) -> Point:
+    """Return the one that took less."""
+    return min(one, other, key=lambda point: point.timing.total)
 
 
 def thresholds(records: list[dict], forces: list[float]) -> list[float]:
@@ -167,7 +178,7 @@ def _crossing(rates: np.ndarray, forces: list[float]) -> float:
 def tell_times(points: list[Point], way: Way) -> None:
     """Print the table of times."""
     print(f"{len(points)} points, {SEGMENTS} segments, until {way.until} with rtol = {way.rtol:g}")
-    print(f"  ms of core time, the best of {TIMES}, and steps in the mean")
+    print(f"  ms of core time, the best of {ROUNDS}, and steps in the mean")
     titles = (
         "points",
         "mean",
@@ -183,12 +194,12 @@ def tell_times(points: list[Point], way: Way) -> None:
     print("  " + "".ljust(18) + "".join(title.rjust(9) for title in titles))
     groups: dict[str, list[Point]] = {}
     for point in points:
-        groups.setdefault(point.run.verdict.name, []).append(point)
+        groups.setdefault(point.verdict.name, []).append(point)
     for name, group in [*groups.items(), ("all", points)]:
         total = np.array([point.timing.total for point in group])
         told = [total.mean(), *np.quantile(total, (0.5, 0.95, 1.0))]
         told += np.mean([astuple(point.timing) for point in group], axis=0).tolist()
-        told.append(float(np.mean([point.run.health.steps for point in group])))
+        told.append(float(np.mean([point.steps for point in group])))
         print(f"  {name:<18}{len(group):9}" + "".join(f"{value:9.2f}" for value in told))
 
 
@@ -200,15 +211,15 @@ def tell_names(points: list[Point], rtol: float) -> None:
     print("  thresholds of solved states near " + ", ".join(f"{f:.2f}" for f in sorted(borders)))
     wrong, open_, off = [], [], []
     for point, record in zip(points, records, strict=True):
-        name = point.run.verdict.name
+        name = point.verdict.name
         right = {record["verdict"], *record["also"].split(", ")}
         near = min((abs(point.force - f) for f in borders), default=np.nan)
         told = f"{name} at F = {point.force:.3f}, {near:.2f} from the nearest threshold"
         if name == "undecided":
-            open_.append(f"{told}: {point.run.verdict.reason}")
+            open_.append(f"{told}: {point.verdict.reason}")
         elif name not in right:
             wrong.append(f"{told}, solved states say {', '.join(filter(None, right))}")
-        elif (found := point.run.frequency) is not None:
+        elif (found := point.frequency) is not None:
             kind = "spinning" if name == "spinning" else "flapping"
             away = abs(abs(found.value) / record[f"{kind}_frequency"] - 1.0)
             off.append((away, found.error / abs(found.value), point.force))
