@@ -24,7 +24,7 @@ from contenders.lapack import REPEATED, best, lapack
 from contenders.orbits import Orbit, orbit
 from undula.analysis.schedule import Schedule
 from undula.analysis.simulation import Simulation
-from undula.compiled import kernel
+from undula.compiled import FASTMATH
 from undula.numerics import memory as names
 from undula.numerics.banded import filled
 from undula.numerics.integrate import advance
@@ -35,30 +35,33 @@ NEVER = np.iinfo(np.int64).max
 #: Additions and multiplications a node of a filament in space, counted in the sources.
 RESIDUAL_COUNT, MATRIX_COUNT = 111, 188
 
+#: Compile a part of a step, to be repeated in a loop.
+part = numba.njit(fastmath=FASTMATH, error_model="numpy", forceinline=True)
 
-@kernel
+
+@part
 def _residual(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
     residual(system, y, w, 1e-5, out)
 
 
-@kernel
+@part
 def _matrix(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
     matrix(system, y, w, 1e-5, 0.0, band)
 
 
-@kernel
+@part
 def _matrix_and_factor(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
     matrix(system, y, w, 1e-5, 0.0, band)
     factor(system, band)
 
 
-@kernel
+@part
 def _solve(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
     out[0] = 1.0  # so that numbers stay of one size
     solve(system, band, out)
 
 
-@kernel
+@part
 def _rates(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
     rates(system, y, w, out)
 

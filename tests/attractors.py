@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from uncached import uncached
 from undula.compiled import kernel
 from undula.numerics.exponents import Block, growth
 from undula.numerics.memory import start
@@ -31,8 +32,8 @@ from undula.numerics.tangents import advance_with_changes
 LORENZ, TORUS = range(2)
 SIGMA, RHO, BETA = 10.0, 28.0, 8.0 / 3.0
 
-#: The loop for the systems of this file, compiled without the package's cache on disk.
-advance = kernel(advance_with_changes.py_func)
+#: The loop for the systems of this file.
+advance = uncached(advance_with_changes.py_func)
 
 
 class Attractor(NamedTuple):

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from uncached import uncached
 from undula.compiled import kernel
 from undula.numerics.integrate import advance
 from undula.numerics.memory import EQUAL_STEPS, IN_FRAME, ORDER, PLANNED_ORDER, Memory, start
@@ -40,8 +41,8 @@ from undula.numerics.system import (
 
 FOLLOWER, BEAD, SPINNER = range(3)
 
-#: The time loop for the systems of this file, compiled without the package's cache on disk.
-run = kernel(advance.py_func)
+#: The time loop for the systems of this file.
+run = uncached(advance.py_func)
 
 ALL_STEPS = 2**62
 

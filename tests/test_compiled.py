@@ -4,10 +4,12 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
-from numba.core import caching
+from numba.core import caching, codegen
 
+from uncached import uncached
 from undula import compiled
 
 INNER = "from toy.compiled import kernel\n\n\n@kernel\ndef inner(x):\n    return x + {}\n"
@@ -81,6 +83,28 @@ def test_code_outside_the_package_is_cached_as_if_the_package_were_not_there() -
     ours, theirs = caching.CacheImpl._locator_classes[:3], caching.CacheImpl._locator_classes[3:]
     assert not any(locator.from_function(shutil.copytree, shutil.__file__) for locator in ours)
     assert caching.InTreeCacheLocator in theirs
+
+
+def test_a_kernel_is_optimised_with_what_calls_it_and_not_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    optimised: list[str] = []
+    optimise = codegen.JITCodeLibrary._optimize_final_module
+
+    def noted(library: codegen.JITCodeLibrary) -> None:
+        optimised.append(library.name)
+        optimise(library)
+
+    monkeypatch.setattr(codegen.JITCodeLibrary, "_optimize_final_module", noted)
+    inner = compiled.kernel(lambda x: 2.0 * x)
+
+    @uncached
+    def outer(x: Any) -> Any:
+        return inner(x)
+
+    assert outer(1.5) == inner(1.5) == 3.0
+    assert any("outer" in name for name in optimised)
+    assert not any("lambda" in name for name in optimised)
 
 
 def show(folder: Path) -> list[str]:

@@ -19,7 +19,9 @@ from systems import (
     follow,
     sections_of,
 )
-from undula.numerics.control import rescale, turn_history
+from uncached import uncached
+from undula.numerics.control import rescale
+from undula.numerics.control import turn_history as turn_history_as_written
 from undula.numerics.memory import (
     FRAME_CHANGES,
     IN_FRAME,
@@ -31,6 +33,8 @@ from undula.numerics.memory import (
 from undula.numerics.results import Status
 from undula.numerics.schemes import SCHEMES, BackwardDifferentiation
 from undula.numerics.system import RATES
+
+turn_history = uncached(turn_history_as_written)
 
 #: From rtol 1e-4, where the errors of the first steps no longer matter, down to where round-off in
 #: the times of a stiff system does not matter yet.

@@ -15,8 +15,8 @@ from cases import (
     filament,
     random_state,
 )
+from uncached import uncached
 from undula.arrays import Array, State
-from undula.compiled import kernel
 from undula.models import starts
 from undula.models.filament import Filament
 from undula.models.loads import Load
@@ -27,17 +27,17 @@ from undula.numerics.system import generator, matrix, residual, structure_of
 every_rigid_form = pytest.mark.parametrize("form", RIGID_FORMS, ids=str)
 
 
-@kernel
+@uncached
 def write_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
     residual(system, y, w, c, out)
 
 
-@kernel
+@uncached
 def write_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
     matrix(system, y, w, c, turn, band)
 
 
-@kernel
+@uncached
 def write_generator(system: Any, y: Any, out: Any) -> None:
     generator(system, y, out)
 

@@ -19,9 +19,9 @@ from systems import (
     copied,
     pinned,
 )
+from uncached import uncached
 from undula.analysis.schedule import Schedule
 from undula.arrays import Array
-from undula.compiled import kernel
 from undula.models.model import Model
 from undula.numerics.memory import (
     FAILED,
@@ -38,8 +38,8 @@ from undula.numerics.stepping import Options
 from undula.numerics.system import derivative_half_bandwidth
 from undula.numerics.tangents import advance_with_changes
 
-#: The loop for the systems of the tests, compiled without the package's cache on disk.
-advance = kernel(advance_with_changes.py_func)
+#: The loop for the systems of the tests.
+advance = uncached(advance_with_changes.py_func)
 
 FOREVER = np.inf
 #: Newton's method is taken to where differences of two runs still have six digits.

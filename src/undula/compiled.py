@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import caching
+from numba.core import caching, codegen
+from numba.extending import register_jitable
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -51,19 +52,48 @@ caching.CacheImpl._locator_classes[:0] = [
     )
 ]
 
-# Not "nnan" and "ninf": a non-finite state has to be noticed.
-_FASTMATH = {"contract", "reassoc", "arcp", "nsz"}
 
-#: Compile a kernel, to become a part of whatever calls it. Left as a function of its own, it would
-#: be shared between compiled modules in a process that compiles and not in one that loads them from
-#: the cache, and the two would differ by round-off.
-kernel = numba.njit(fastmath=_FASTMATH, error_model="numpy", forceinline=True)
+class _Library(codegen.JITCodeLibrary):
+    """A compiled library that leaves kernels to be optimised with what they become a part of.
+
+    numba would optimise each of them by itself, and with it once more all that it has inlined,
+    which takes a third of the time of compiling.
+    """
+
+    def _optimize_final_module(self) -> None:
+        public = [
+            list(function.attributes)
+            for function in self._final_module.functions
+            if not function.is_declaration and function.linkage.name == "external"
+        ]
+        kernels = [one for one in public if any(b"alwaysinline" in each for each in one)]
+        if not kernels or len(kernels) < len(public):
+            super()._optimize_final_module()  # type: ignore[no-untyped-call]
+
+
+codegen.JITCPUCodegen._library_class = _Library
+
+#: Not "nnan" and "ninf": a non-finite state has to be noticed.
+FASTMATH = {"contract", "reassoc", "arcp", "nsz"}
+
+#: What generic functions are resolved to becomes a part of what calls them.
+RESOLVED: Any = {"forceinline": True, "no_cfunc_wrapper": True}
+
+#: Make a function a kernel, which becomes a part of whatever compiled code calls it; called from
+#: Python it is what is written. Left as a function of its own, it would be shared between compiled
+#: modules in a process that compiles and not in one that loads them from the cache, and the two
+#: would differ by round-off.
+kernel = register_jitable(fastmath=FASTMATH, error_model="numpy", **RESOLVED)
 
 #: The same for recurrences, whose sums must keep the order in which their terms become known.
-kernel_in_order = numba.njit(fastmath={"contract", "nsz"}, error_model="numpy", forceinline=True)
-
-#: The same for what generic functions are resolved to.
-RESOLVED: Any = {"forceinline": True}
+kernel_in_order = register_jitable(fastmath={"contract", "nsz"}, error_model="numpy", **RESOLVED)
 
 #: Compile an entry point, called from Python and cached on disk.
-entry = numba.njit(fastmath=_FASTMATH, error_model="numpy", cache=True, nogil=True)
+entry = numba.njit(fastmath=FASTMATH, error_model="numpy", cache=True, nogil=True)
+
+
+@kernel
+def overwrite(out: Any, values: Any) -> None:
+    """Write values (n,) to out (n,). numba takes seconds to compile `out[:] = values`."""
+    for i in range(out.shape[0]):
+        out[i] = values[i]

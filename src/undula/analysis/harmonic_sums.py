@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from undula.compiled import entry, kernel
+from undula.compiled import entry, kernel, overwrite
 
 
 @kernel
@@ -127,7 +127,7 @@ def fit(row: Any, lower: Any, fitted: Any, left: Any, moved: Any, seen: Any, und
     for k in range(top):
         steepness += (np.conj(moved[k]) * seen[k]).real
     times_gram(row[1], moved, seen)
-    undone[:] = seen
+    overwrite(undone, seen)
     solve_gram(lower, undone)
     # What a change of the coefficients could undo does not count.
     for k in range(top):

@@ -38,7 +38,7 @@ from typing import Any
 
 import numpy as np
 
-from undula.compiled import kernel
+from undula.compiled import kernel, overwrite
 from undula.models.joint import stiffening, stiffening_slope
 from undula.models.rod import FramedRod
 from undula.models.rod_equations import along_kernel, rates_kernel, tangents_kernel
@@ -134,7 +134,7 @@ def director_above(y: Any, moved: Any, j: Any, x: Any) -> None:
 def first_director(j: Any, first: Any, x: Any) -> None:
     """Put the director of the first link, which y does not hold, below joint 1."""
     if j == 1:
-        x[6:9] = first
+        overwrite(x[6:9], first)
 
 
 @kernel

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from undula.compiled import kernel
+from undula.compiled import kernel, overwrite
 from undula.models.framed import (
     JOINT,
     director_above,
@@ -51,7 +51,7 @@ def transport_derivative(system: Any, x: Any, inverse: Any, j: Any, out: Any) ->
     soft = system.compliance * system.link if j > 0 else 0.0
     z, moved = np.empty(JOINT, np.complex128), np.empty(3, np.complex128)
     for k in range(JOINT):
-        z[:] = x
+        overwrite(z, x)
         z[k] += complex(0.0, _STEP)
         slant = -inverse * inverse * joint_cosine(z).imag
         turn = soft * z[9].imag
@@ -68,7 +68,7 @@ def slopes_derivative(system: Any, x: Any, of_c: Any, j: Any, out: Any) -> None:
     g, slope, inverse = of_c
     curvature = stiffening_curvature(joint_cosine(x))
     for k in range(JOINT):
-        z[:] = x
+        overwrite(z, x)
         z[k] += complex(0.0, _STEP)
         step = joint_cosine(z).imag
         stiff = complex(g, slope * step), complex(slope, curvature * step)
@@ -153,8 +153,9 @@ def framed_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any)
         director_above(y, moved, j, x)
         slopes_derivative(system, x, of_c, j, found)
         if j == 0:
-            director[:] = moved
-            first[:] = carried
+            overwrite(director, moved)
+            for a in range(3):
+                overwrite(first[a], carried[a])
             first_folded(found, first, 3)
         elif j == 1:
             first_folded(carried, first, 0)

@@ -253,7 +253,7 @@ def _register_motion(rod: Any) -> None:
                 out[k] = 0.0
 
     if rod is not FramedRod:
-        implements(rates, rod)(rates_kernel(rod).py_func)
+        implements(rates, rod)(rates_kernel(rod))
 
     @implements(size, rod)
     def rod_size(system: Any, vector: Any, mask: Any) -> Any:

@@ -110,11 +110,11 @@ def _register_gentle(rod: Any) -> None:
 _OTHERS: dict[Any, Any] = {WindingRod: winding_derivative, FramedRod: framed_derivative}
 for _rod in RODS:
     _derivative: Any = _OTHERS.get(_rod) or derivative_kernel(_rod, link_blocks_kernel(_rod))
-    implements(derivative, _rod)(_derivative.py_func)
+    implements(derivative, _rod)(_derivative)
     if _rod in GENTLE_RODS:
         _register_gentle(_rod)
     else:
-        implements(matrix, _rod)(_derivative.py_func)
+        implements(matrix, _rod)(_derivative)
 
 
 @entry

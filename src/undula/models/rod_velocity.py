@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from undula.compiled import entry, kernel
+from undula.compiled import entry, kernel, overwrite
 from undula.models.joint import joint_energy, stiffening
 from undula.models.rod import OTHER_JOINTS, RODS, FramedRod, WindingRod
 from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tangents_kernel
@@ -152,8 +152,8 @@ for _rod in RODS:
     _register(_rod)
     if _rod not in OTHER_JOINTS:
         _register_energy(_rod)
-implements(elastic_energy, WindingRod)(winding_energy.py_func)
-implements(elastic_energy, FramedRod)(framed_energy.py_func)
+implements(elastic_energy, WindingRod)(winding_energy)
+implements(elastic_energy, FramedRod)(framed_energy)
 
 
 @entry
@@ -174,7 +174,7 @@ def observe(system: Any, states: Any, out: Any) -> None:
     """
     y, v, found = np.empty(states.shape[1]), np.empty(states.shape[1]), np.empty(3)
     for k in range(states.shape[0]):
-        y[:] = states[k]
+        overwrite(y, states[k])
         out[k, 0], out[k, 1] = elastic_energy(system, y)
         if out.shape[1] > 2:
             find_multipliers(system, y)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from undula.compiled import kernel
+from undula.compiled import kernel, overwrite
 from undula.models.framed import (
     JOINT,
     bends,
@@ -57,16 +57,16 @@ def carry_directors(system: Any, y: Any, t: Any, turning: Any, stiffness: Any) -
         (g, _, inverse), joint = of_cosine(joint_cosine(x)), system.joint[j]
         transport(x, inverse, twist_of(system, x, j), moved)
         if j == 0:
-            first[:] = moved
+            overwrite(first, moved)
         else:
-            y[8 * (j - 1) + 4 : 8 * (j - 1) + 7] = moved
+            overwrite(y[8 * (j - 1) + 4 : 8 * (j - 1) + 7], moved)
         director_above(y, moved, j, x)
         along, across, one, two = bends(system, x, g, j)
         u1, u2 = g * across, -g * along
         turning[j] = one * u2 - two * u1
         stiffness[j] = joint * (u2 * u2 + system.ratio * u1 * u1) - one * u1 - two * u2
         energy += 0.5 * (one * (u1 - system.natural[j, 0]) + two * (u2 - system.natural[j, 1]))
-    y[8 * n - 4 : 8 * n - 1] = y[8 * n - 12 : 8 * n - 9]
+    overwrite(y[8 * n - 4 : 8 * n - 1], y[8 * n - 12 : 8 * n - 9])
     return energy
 
 
@@ -125,7 +125,7 @@ def find_frames(system: Any, y: Any) -> Any:
                 stiffness[j] = max(stiffness[j], 0.0)
             newton_turns(system, y, turning, stiffness, turn)
         largest, part, found = np.abs(turn).max(), 1.0, np.inf
-        before[:] = y[7::8]
+        overwrite(before, y[7::8])
         for _ in range(_MOST_HALVINGS):
             take_turns(system, y, turn, before, part)
             found = carry_directors(system, y, t, turning, stiffness) + twist_energy(system, y)

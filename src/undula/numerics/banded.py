@@ -151,7 +151,8 @@ def _indented(lines: list[str], by: int) -> str:
 def _written_out(source: str, name: str) -> Callable[..., Any]:
     namespace: dict[str, Any] = {}
     exec(source, namespace)
-    return kernel_in_order(namespace[name])
+    written: Callable[..., Any] = kernel_in_order(namespace[name])
+    return written
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from undula.compiled import kernel
+from undula.compiled import kernel, overwrite
 from undula.numerics.memory import IN_FRAME, ORDER, STEP, TIME
 from undula.numerics.system import rotate
 
@@ -14,7 +14,7 @@ TRIALS = 8
 def interpolate(system: Any, memory: Any, time: Any, out: Any) -> None:
     """Write the unknowns, in the lab frame, and the integrals at `time` to out (n + RATES,)."""
     step, n = memory.real[STEP], memory.factored_at.shape[0]
-    out[:] = memory.differences[0]
+    overwrite(out, memory.differences[0])
     factor = 1.0
     for j in range(memory.count[ORDER]):
         factor *= (time - memory.real[TIME] + j * step) / (step * (j + 1))

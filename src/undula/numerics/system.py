@@ -25,7 +25,7 @@ from typing import Any
 
 from numba.extending import overload
 
-from undula.compiled import RESOLVED
+from undula.compiled import RESOLVED, overwrite
 from undula.numerics import banded
 
 #: What `rates` gives: the rate of turning, the power put in, the power dissipated.
@@ -84,7 +84,7 @@ def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any
 @generic
 def weigh(system: Any, y: Any, u: Any, out: Any) -> Any:
     """Write R(x) u to the differential rows of out (n,), 0 to the constraint rows."""
-    out[:] = u
+    overwrite(out, u)
 
 
 @generic
@@ -122,7 +122,7 @@ def generator(system: Any, y: Any, out: Any) -> Any:
 @generic
 def rotate(system: Any, y: Any, angle: Any, out: Any) -> Any:
     """Write y turned by an angle [rad] to out (n,), which may be y itself."""
-    out[:] = y
+    overwrite(out, y)
 
 
 def structure_of(system: type) -> banded.Structure:

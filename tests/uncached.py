@@ -1,0 +1,7 @@
+"""Compiled entry points for what the tests define, which the cache on disk does not hold."""
+
+import numba
+
+from undula.compiled import FASTMATH
+
+uncached = numba.njit(fastmath=FASTMATH, error_model="numpy")
