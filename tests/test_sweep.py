@@ -29,7 +29,7 @@ from undula.studies.study_store import load_study, open_study
 pytestmark = pytest.mark.slow
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))
-#: Beats of some links for a while: its points take a tenth of a second or so each.
+#: Beats of some links for a while, long enough together for whoever is killed in between.
 LONGER = """
 [model]
 segments = 5
@@ -39,7 +39,7 @@ until = 1.0
 samples = 400
 [study]
 policy = "random"
-tries = 2
+tries = 4
 [[study.axes]]
 key = "model.drag_ratio"
 values = [1.5, 2.0, 2.5]
@@ -47,7 +47,7 @@ values = [1.5, 2.0, 2.5]
 key = "load.force"
 from = 100.0
 to = 300.0
-count = 8
+count = 20
 """
 #: Processes may have to compile the kernels first.
 PATIENCE = 300.0
