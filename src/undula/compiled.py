@@ -3,6 +3,8 @@
 numba's own cache looks at the one file that holds a function, so an edited kernel would go on
 running in its old form wherever another file calls it. Here every cached function is stamped with a
 digest of all sources of the package: any change of any file makes all of them new.
+
+Kernels are inlined into such functions, and optimised there and nowhere else.
 """
 
 import hashlib
@@ -79,8 +81,9 @@ FASTMATH = {"contract", "reassoc", "arcp", "nsz"}
 #: What generic functions are resolved to becomes a part of what calls them.
 RESOLVED: Any = {"forceinline": True, "no_cfunc_wrapper": True}
 
-#: Make a function a kernel, which becomes a part of whatever compiled code calls it; called from
-#: Python it is what is written. Left as a function of its own, it would be shared between compiled
+#: Make a function a kernel, which becomes a part of whatever compiled code calls it. Called from
+#: Python it is what is written, and so are generic functions in it: only compiled code goes by the
+#: type of a system. Left as a function of its own, a kernel would be shared between compiled
 #: modules in a process that compiles and not in one that loads them from the cache, and the two
 #: would differ by round-off.
 kernel = register_jitable(fastmath=FASTMATH, error_model="numpy", **RESOLVED)
