@@ -33,10 +33,11 @@ def stiffening(c: Any) -> Any:
     """Return g = psi / sin(psi) at c = cos(psi)."""
     z = 0.5 * (1.0 - c)
     if z < _SERIES_BELOW:
-        g = _SERIES[11]
-        for n in range(10, -1, -1):
-            g = g * z + _SERIES[n]
-        return g
+        # By fours, which do not wait for each other.
+        low = _SERIES[0] + _SERIES[1] * z + (_SERIES[2] + _SERIES[3] * z) * z * z
+        middle = _SERIES[4] + _SERIES[5] * z + (_SERIES[6] + _SERIES[7] * z) * z * z
+        high = _SERIES[8] + _SERIES[9] * z + (_SERIES[10] + _SERIES[11] * z) * z * z
+        return low + (middle + high * (z * z) * (z * z)) * (z * z) * (z * z)
     if c < _FOLDED_COSINE:
         return _FOLDED_STIFFENING
     return math.acos(c) / math.sqrt(1.0 - c * c)
