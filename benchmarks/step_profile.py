@@ -1,7 +1,7 @@
 """Where the time of a step goes: each part beside the least that it could take.
 
-Run with `make bench`, or `python benchmarks/step_profile.py`. Flapping at F = 200 and rtol 1e-6.
-Floors are LAPACK's banded factorisation and solution (dgbtrf, dgbtrs) of the same size and band,
+Run with `make bench`, or `python benchmarks/step_profile.py`. Flapping at F = 200 and rtol 1e-6,
+whose matrix is that of motions in a plane; that of motions in space stands beside it. Floors are LAPACK's banded factorisation and solution (dgbtrf, dgbtrs) of the same size and band,
 and the arithmetic at the rate that this processor reaches in a sum of products of arrays in its
 nearest cache. Everything in one process on one thread; the best of several repetitions.
 """
@@ -21,19 +21,32 @@ import numpy as np
 import undula as un
 from contenders import page
 from contenders.lapack import REPEATED, best, lapack
-from contenders.orbits import Orbit, orbit
+from contenders.orbits import AZIMUTH, Orbit, orbit
 from undula.analysis.schedule import Schedule
 from undula.analysis.simulation import Simulation
 from undula.compiled import FASTMATH
 from undula.numerics import memory as names
-from undula.numerics.banded import filled
+from undula.numerics.banded import Structure, filled
 from undula.numerics.integrate import advance
-from undula.numerics.system import factor, matrix, rates, residual, solve, structure_of
+from undula.numerics.system import (
+    factor,
+    matrix,
+    planar_factor,
+    planar_matrix,
+    planar_solve,
+    planar_structure_of,
+    plane,
+    rates,
+    residual,
+    rotate,
+    solve,
+    structure_of,
+)
 
 SEGMENTS, RTOL, BEATS = (20, 40, 100), 1e-6, 20
 NEVER = np.iinfo(np.int64).max
 #: Additions and multiplications a node of a filament in space, counted in the sources.
-RESIDUAL_COUNT, MATRIX_COUNT = 111, 188
+RESIDUAL_COUNT, MATRIX_COUNT, PLANAR_MATRIX_COUNT = 113, 165, 118
 
 #: Compile a part of a step, to be repeated in a loop.
 part = numba.njit(fastmath=FASTMATH, error_model="numpy", forceinline=True)
@@ -59,6 +72,33 @@ def _matrix_and_factor(system: Any, y: Any, w: Any, band: Any, out: Any) -> None
 def _solve(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
     out[0] = 1.0  # so that numbers stay of one size
     solve(system, band, out)
+
+
+@part
+def _plane(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
+    out[0], out[1] = plane(system, y, w)
+
+
+@part
+def _turning(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
+    rotate(system, y, 0.3, out)
+
+
+@part
+def _planar_matrix(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
+    planar_matrix(system, y, w, AZIMUTH, 1e-5, band)
+
+
+@part
+def _planar_matrix_and_factor(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
+    planar_matrix(system, y, w, AZIMUTH, 1e-5, band)
+    planar_factor(system, band)
+
+
+@part
+def _planar_solve(system: Any, y: Any, w: Any, band: Any, out: Any) -> None:
+    out[0] = 1.0
+    planar_solve(system, band, out)
 
 
 @part
@@ -100,10 +140,16 @@ def parts(model: un.Filament, exact: Orbit) -> dict[str, float]:
             "matrix": _matrix,
             "factor": _matrix_and_factor,
             "solve": _solve,
+            "plane": _plane,
+            "planar matrix": _planar_matrix,
+            "planar factor": _planar_matrix_and_factor,
+            "planar solve": _planar_solve,
+            "turning": _turning,
             "rates": _rates,
         }.items()
     }
     took["factor"] -= took["matrix"]
+    took["planar factor"] -= took["planar matrix"]
     return took
 
 
@@ -131,6 +177,15 @@ def beats(model: un.Filament, exact: Orbit) -> tuple[float, Any]:
     return 1e6 * min(taken) / int(count[names.STEPS]), count / count[names.STEPS]
 
 
+def banded_operations(structure: Structure) -> tuple[int, int]:
+    """Return the operations a block of a factorisation and of a solution."""
+    rows = filled(structure)
+    beside = sum(len(lower) + len(upper) for lower, upper in rows)
+    # Eliminating takes a product and a difference for each pair; then the row is divided.
+    eliminating = sum(2 * len(rows[c][1]) for lower, _ in rows for _, c in lower)
+    return eliminating + beside, 2 * beside + len(rows)
+
+
 def profile(segments: int, rate: float) -> list[list[str]]:
     """Return the rows of the table for a number of segments."""
     exact = orbit("undula", segments, "flapping")
@@ -138,17 +193,25 @@ def profile(segments: int, rate: float) -> list[list[str]]:
     step, count = beats(model, exact)
     took, floor = parts(model, exact), lapack(4 * segments, model.system.half_bandwidth)
     made, solved = count[names.FACTORISATIONS], count[names.SOLVES]
-    times = {"residual": solved, "matrix": made, "factor": made, "solve": solved, "rates": 1.0}
-    rows = filled(structure_of(type(model.system)))
-    beside = sum(len(lower) + len(upper) for lower, upper in rows)
-    # Eliminating takes a product and a difference for each pair; then the row is divided.
-    eliminating = sum(2 * len(rows[c][1]) for lower, _ in rows for _, c in lower)
+    # A residual is turned into the plane and its solution back, a state once more to be kept.
+    times = {
+        "residual": solved,
+        "plane": made,
+        "planar matrix": made,
+        "planar factor": made,
+        "planar solve": solved,
+        "turning": 2.0 * solved + made,
+        "rates": 1.0,
+    }
+    in_space, in_plane = structure_of(type(model.system)), planar_structure_of(type(model.system))
+    assert in_plane is not None
     operations = {
         "residual": RESIDUAL_COUNT,
         "matrix": MATRIX_COUNT,
-        "factor": eliminating + beside,
-        "solve": 2 * beside + len(rows),
+        "planar matrix": PLANAR_MATRIX_COUNT,
     }
+    operations["factor"], operations["solve"] = banded_operations(in_space)
+    operations["planar factor"], operations["planar solve"] = banded_operations(in_plane)
     told = []
     for part, each in took.items():
         least = segments * operations[part] / rate if part in operations else np.nan
@@ -156,14 +219,14 @@ def profile(segments: int, rate: float) -> list[list[str]]:
             [
                 str(segments),
                 part,
-                f"{times[part]:.2f}",
+                f"{times[part]:.2f}" if part in times else "in space",
                 f"{each:.2f}",
-                f"{each * times[part]:.2f}",
+                f"{each * times[part]:.2f}" if part in times else "",
                 f"{floor[part]:.2f}" if part in floor else "",
                 f"{least:.2f}" if part in operations else "",
             ]
         )
-    rest = step - sum(times[part] * each for part, each in took.items())
+    rest = step - sum(times[part] * took[part] for part in times)
     told.append([str(segments), "control and the rest", "1", "", f"{rest:.2f}", "", ""])
     bound = made * floor["factor"] + solved * floor["solve"]
     told.append(

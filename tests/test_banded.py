@@ -4,9 +4,24 @@ import numpy as np
 import pytest
 
 from undula.models.rod import PlanarRod, SpatialRod
-from undula.numerics.banded import Structure, factor_kernel, filled, full, solve_kernel, to_dense
+from undula.numerics.banded import (
+    Structure,
+    blank_kernel,
+    factor_kernel,
+    filled,
+    full,
+    solve_kernel,
+    to_dense,
+)
 
 HALF_BANDWIDTHS = range(1, 12)
+STRUCTURES = {
+    "in space": SpatialRod.structure,
+    "confined": PlanarRod.structure,
+    "in a plane": SpatialRod.planar_structure,
+}
+
+every_structure = pytest.mark.parametrize("name", STRUCTURES)
 
 
 def random_band(rows: int, half: int, rng: np.random.Generator) -> np.ndarray:
@@ -83,16 +98,16 @@ def test_a_saddle_with_zeros_on_its_diagonal_needs_no_pivoting(half: int) -> Non
         np.testing.assert_allclose(matrix @ solution(band, right), right, atol=1e-12)
 
 
-@pytest.mark.parametrize("rod", [SpatialRod, PlanarRod])
-def test_a_structured_system_of_any_size_is_solved_like_numpy_does(rod: type) -> None:
-    rng = np.random.default_rng(5)
+@every_structure
+def test_a_structured_system_of_any_size_is_solved_like_numpy_does(name: str) -> None:
+    rng, structure = np.random.default_rng(5), STRUCTURES[name]
     for blocks in (1, 2, 3, 4, 5, 20):
-        band = structured_band(rod.structure, blocks, rng)
+        band = structured_band(structure, blocks, rng)
         right = rng.normal(size=band.shape[0])
         stored = np.arange(right.size).reshape(blocks, -1)[::-1].ravel()  # the tip comes first
         expected = np.linalg.solve(to_dense(band), right[stored])[stored]
         # As above: dominant rows keep round-off near 1e-15.
-        found = solution(band, right, rod.structure)
+        found = solution(band, right, structure)
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
 
 
@@ -110,6 +125,31 @@ def test_what_the_structure_leaves_zero_is_neither_read_nor_written() -> None:
     np.testing.assert_array_equal(
         solution(marked, right, structure), solution(band, right, structure)
     )
+
+
+@every_structure
+def test_what_is_going_to_fill_in_is_blanked_and_nothing_else(name: str) -> None:
+    structure, given = STRUCTURES[name], np.random.default_rng(7)
+    block, half = structure.block, structure.half_bandwidth
+    band = given.normal(size=(3 * block, 2 * half + 1))
+    expected = band.copy()
+    for row, (lower, upper) in enumerate(filled(structure)):
+        for shift, column in {*lower, *upper}:
+            if (row, shift, column) not in structure.entries:
+                expected[block + row, block * shift + column - row + half] = 0.0
+    assert (expected == 0.0).any()
+    blank_kernel(structure)(band, block)
+    np.testing.assert_array_equal(band, expected)
+
+
+def test_apart_in_and_across_a_plane_there_is_a_third_of_the_work() -> None:
+    # Multiplications with subtraction in the elimination of a node.
+    work = {
+        name: sum(len(rows[c][1]) for lower, _ in rows for _, c in lower)
+        for name, rows in ((name, filled(structure)) for name, structure in STRUCTURES.items())
+    }
+    assert work["in a plane"] == work["confined"] + 4
+    assert work["in space"] / work["in a plane"] > 2.5
 
 
 def test_a_structure_that_fills_in_outside_its_band_is_refused() -> None:

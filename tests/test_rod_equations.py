@@ -19,10 +19,12 @@ from cases import (
     filament,
     random_state,
 )
+from uncached import uncached
 from undula.arrays import Array
 from undula.models import starts
 from undula.models.filament import Filament
 from undula.models.loads import Load
+from undula.numerics.system import size
 
 BENDS = [0.3, 1.0, 2.0]
 every_bend = pytest.mark.parametrize("bend", BENDS)
@@ -215,6 +217,20 @@ def test_moves_within_the_plane_cause_no_motion_out_of_it_not_even_round_off(
     size = (model.segments, 3, model.segments, 3)
     jacobian = model.jacobian(x).reshape(size)
     assert (jacobian[:, 1, :, [0, 2]] == 0.0).all()
+
+
+@uncached
+def size_of(system: Any, vector: Any, mask: Any) -> Any:
+    return size(system, vector, mask)
+
+
+@every_form
+def test_the_size_of_a_change_is_that_of_the_tangents(form: Form) -> None:
+    model = filament(form)
+    change = np.random.default_rng(8).normal(size=model.position_mask.size)
+    links = np.diff(model.positions(change).reshape(model.segments, -1), axis=0, prepend=0.0)
+    expected = np.sqrt(np.sum((links * model.segments) ** 2) / model.segments)
+    assert size_of(model.system, change, model.position_mask) == pytest.approx(expected, rel=1e-14)
 
 
 def flat_shape(model: Filament) -> Array:

@@ -18,6 +18,8 @@ from contenders.textbook import TENSILE_STIFFNESS, Array
 
 #: Tip forces at which filaments spin and flap.
 FORCES = {"spinning": 75.0, "flapping": 200.0}
+#: Of the plane of flapping, which is no coordinates' plane [rad].
+AZIMUTH = 1.0
 
 
 class FullCells(un.Filament):
@@ -109,7 +111,7 @@ def orbit(layout: str, segments: int, motion: str) -> Orbit:
         mean, wave = ahead.copy(), ahead + 1j * aside
         mean[:, :2], wave[:, 2] = 0.0, 0.0
         return Orbit(model, found.frequency, np.array([mean.ravel(), wave.ravel()]))
-    shapes = found.nodes[:, 1:].reshape(len(found.time), -1)
+    shapes = np.array([model.rotate(model.from_nodes(each), AZIMUTH) for each in found.nodes])
     waves = np.fft.rfft(shapes, axis=0)[:-1] / len(shapes)
     waves[1:] *= 2.0
     return Orbit(model, found.frequency, waves)

@@ -53,6 +53,20 @@ def gentle_structure(dimension: int) -> Structure:
     return Structure(2 * dimension + 2, dimension + 1, entries, backwards=True)
 
 
+def planar_structure() -> Structure:
+    """Return where that matrix has entries for links that move in space but lie in a plane, y = 0.
+
+    To first order what happens in the plane and what happens across it know nothing of each other.
+    """
+    whole, across = gentle_structure(3), 1
+    apart = frozenset(
+        (row, shift, column)
+        for row, shift, column in whole.entries
+        if (row == across) == (column == across)
+    )
+    return whole._replace(entries=apart)
+
+
 class SpatialRod(Tables):
     """Rigid links in space."""
 
@@ -61,6 +75,7 @@ class SpatialRod(Tables):
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 8
     structure: ClassVar = gentle_structure(3)
+    planar_structure: ClassVar = planar_structure()
     derivative_half_bandwidth: ClassVar = 11
 
 

@@ -260,10 +260,9 @@ def _register_motion(rod: Any) -> None:
         total = 0.0
         for a in range(d):
             total += vector[a] * vector[a]
-        for i in range(1, system.joint.shape[0]):
-            for a in range(d):
-                change = vector[m * i + a] - vector[m * (i - 1) + a]
-                total += change * change
+        for k in range(mask.shape[0] - m):  # masked, as loops without gaps are vectorised
+            change = vector[k + m] - vector[k]
+            total += mask[k] * change * change
         return math.sqrt(total * system.joint.shape[0])
 
     if d == 3 and rod is not FramedRod:

@@ -89,6 +89,20 @@ def _entry(structure: Structure, row: int, shift: int, column: int, behind: int 
     return f"band[first{behind} + {row}, {at}]"
 
 
+def _blank_source(structure: Structure) -> str:
+    """Python source of `blank`."""
+    lines = [
+        f"{_entry(structure, row, shift, column)} = 0.0"
+        for row, (lower, upper) in enumerate(filled(structure))
+        for shift, column in [*lower, *upper]
+        if (row, shift, column) not in structure.entries
+    ]
+    return f"""
+def blank(band, first0):
+    {_indented(lines or ["pass"], 4)}
+"""
+
+
 def _factor_source(structure: Structure) -> str:
     """Python source of `factor`, with the elimination of a block written out."""
     m, lines = structure.block, []
@@ -153,6 +167,15 @@ def _written_out(source: str, name: str) -> Callable[..., Any]:
     exec(source, namespace)
     written: Callable[..., Any] = kernel_in_order(namespace[name])
     return written
+
+
+@cache
+def blank_kernel(structure: Structure) -> Callable[..., Any]:
+    """Return a compiled `blank(band, first)`: write 0 where a block of rows is going to fill in.
+
+    `first` is the first of these rows. What the matrix itself may have there is left alone.
+    """
+    return _written_out(_blank_source(structure), "blank")
 
 
 @cache

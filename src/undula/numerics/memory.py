@@ -15,8 +15,8 @@ TURN_RATE, SPEED, SHAPE_SPEED, DISPLACEMENT, STORING_RATE, SMALLEST_STEP, LARGES
 REALS = 13
 #: Entries of `Memory.count`.
 ORDER, PLANNED_ORDER, EQUAL_STEPS, STEPS, REJECTED, FAILED, FACTORISATIONS, SOLVES = range(8)
-IN_FRAME, FRAME_VOTES, FRAME_CHANGES = range(8, 11)
-COUNTS = 11
+IN_FRAME, FRAME_VOTES, FRAME_CHANGES, PLANAR = range(8, 12)
+COUNTS = 12
 
 
 class Memory(NamedTuple):
@@ -27,9 +27,9 @@ class Memory(NamedTuple):
     differences : ndarray, shape (max order + 3, n + RATES)
         Backward differences of the unknowns and, behind them, of the integrals.
     factors : ndarray, shape (n, 2 b + 1)
-        The factored matrix of Newton's method.
+        The factored matrix of Newton's method; count[PLANAR] is 1 if it is a planar one.
     factored_at : ndarray, shape (n,)
-        The state that it belongs to.
+        The state that it belongs to, in its own orientation.
     border : ndarray, shape (n,)
         Its solve with the column that belongs to the turning rate.
     real, count : ndarray

@@ -9,7 +9,10 @@ one. A rod measures tangents, not positions: their errors are what the energy an
 
 A frozen Newton matrix goes stale because the system turns rather than because time passes. It is
 therefore used in the orientation that it was made in: the residual is turned back, the solution
-forth. In the co-rotating frame positions are y = Q(-angle) x and the turning rate Omega is one more
+forth. That of a motion in a plane is made in the orientation of this plane and without what would
+be zero there; a motion is in a plane where it is off it by less than a step may be in error.
+
+In the co-rotating frame positions are y = Q(-angle) x and the turning rate Omega is one more
 unknown, fixed by the condition that the motion in the frame has no component along the rotation:
 
     R(y) (w + c Omega S y) = c f(y, z),    <S y, w> = 0,    w = c dy/dt.
@@ -22,7 +25,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from undula.compiled import kernel
+from undula.compiled import kernel, overwrite
 from undula.numerics.memory import (
     CONTRACTION,
     DISPLACEMENT,
@@ -31,6 +34,7 @@ from undula.numerics.memory import (
     FACTORISATIONS,
     IN_FRAME,
     ORDER,
+    PLANAR,
     SOLVES,
     STEP,
 )
@@ -41,6 +45,10 @@ from undula.numerics.system import (
     factor,
     generator,
     matrix,
+    planar_factor,
+    planar_matrix,
+    planar_solve,
+    plane,
     rates,
     residual,
     rotate,
@@ -160,25 +168,41 @@ def is_stale(system: Any, memory: Any, options: Any, work: Any, c: Any, angle: A
         farthest *= min(1.0, memory.real[DISPLACEMENT])
     if abs(c / memory.real[FACTORED_C] - 1.0) > 1e-12:
         return True
-    rotate(system, work.y, -angle, work.correction)
-    for i in range(work.y.shape[0]):
-        moved = abs(work.correction[i] - memory.factored_at[i]) * options.mask[i]
+    turned = work.y
+    if angle != 0.0:
+        turned = work.correction
+        rotate(system, work.y, -angle, turned)
+    for i in range(work.y.shape[0] - 1, -1, -1):  # a free end, which moves farthest, comes last
+        moved = abs(turned[i] - memory.factored_at[i]) * options.mask[i]
         if not moved <= farthest:
             return True
     return False
 
 
 @kernel
-def refactor(system: Any, memory: Any, work: Any, c: Any, turn: Any) -> Any:
+def refactor(system: Any, memory: Any, work: Any, c: Any, scale: Any, turn: Any) -> Any:
     """Make and factor the Newton matrix at the state in `work`; False where it is singular."""
-    in_frame = memory.count[IN_FRAME] == 1
-    matrix(system, work.y, work.w, c, turn if in_frame else 0.0, memory.factors)
-    for i in range(work.y.shape[0]):
-        memory.factored_at[i] = work.y[i]
+    in_frame, azimuth, off = memory.count[IN_FRAME] == 1, 0.0, math.inf
+    if not in_frame:
+        azimuth, off = plane(system, work.y, work.w)
     memory.real[FACTORED_C] = c
     memory.real[FACTORED_ANGLE] = work.predicted[work.y.shape[0]]
     memory.count[FACTORISATIONS] += 1
-    if not factor(system, memory.factors):
+    if off <= scale:
+        memory.count[PLANAR] = 1
+        memory.real[FACTORED_ANGLE] -= azimuth
+        if azimuth == 0.0:
+            overwrite(memory.factored_at, work.y)
+        else:
+            rotate(system, work.y, -azimuth, memory.factored_at)
+        planar_matrix(system, work.y, work.w, azimuth, c, memory.factors)
+        regular = planar_factor(system, memory.factors)
+    else:
+        memory.count[PLANAR] = 0
+        overwrite(memory.factored_at, work.y)
+        matrix(system, work.y, work.w, c, turn if in_frame else 0.0, memory.factors)
+        regular = factor(system, memory.factors)
+    if not regular:
         memory.real[FACTORED_C] = 0.0
         return False
     if in_frame:
@@ -199,7 +223,10 @@ def one_correction(
     residual(system, work.y, work.w, c, delta)
     if angle != 0.0:
         rotate(system, delta, -angle, delta)
-    solve(system, memory.factors, delta)
+    if memory.count[PLANAR] == 1:
+        planar_solve(system, memory.factors, delta)
+    else:
+        solve(system, memory.factors, delta)
     memory.count[SOLVES] += 1
     if angle != 0.0:
         rotate(system, delta, angle, delta)
@@ -232,9 +259,9 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
         angle = 0.0 if in_frame else work.predicted[n] - memory.real[FACTORED_ANGLE]
         fresh = attempt == 1 or is_stale(system, memory, options, work, c, angle)
         if fresh:
-            angle = 0.0
-            if not refactor(system, memory, work, c, turn):
+            if not refactor(system, memory, work, c, scale, turn):
                 break
+            angle = 0.0 if in_frame else work.predicted[n] - memory.real[FACTORED_ANGLE]
         if iterate(system, memory, options, work, c, scale, turn, angle):
             return True
         memory.real[CONTRACTION] = 1.0
