@@ -1,9 +1,10 @@
 """Where the time of a step goes: each part beside the least that it could take.
 
 Run with `make bench`, or `python benchmarks/step_profile.py`. Flapping at F = 200 and rtol 1e-6,
-whose matrix is that of motions in a plane; that of motions in space stands beside it. Floors are LAPACK's banded factorisation and solution (dgbtrf, dgbtrs) of the same size and band,
-and the arithmetic at the rate that this processor reaches in a sum of products of arrays in its
-nearest cache. Everything in one process on one thread; the best of several repetitions.
+whose matrix is that of motions in a plane; that of motions in space stands beside it. Floors are
+LAPACK's banded factorisation and solution (dgbtrf, dgbtrs) of the same size and band, and the
+arithmetic at the rate that this processor reaches in a sum of products of arrays in its nearest
+cache. Everything in one process on one thread; the best of several repetitions.
 """
 # ruff: noqa: ARG001
 # (loops over parts give all of them the same arguments, used or not)
