@@ -81,7 +81,7 @@ def _draw_column(
     picked = late[np.linspace(0, len(late) - 1, min(_SHAPES, len(late))).astype(int)]
     space = space_axes(figure, (left, _UPPER[0], 0.96 * width, _UPPER[1]), motion.nodes[late])
     draw_shapes(space, motion.nodes[picked])
-    angle = winding_angle(motion.nodes)
+    angle = winding_angle(motion.nodes[:, -1:])
     rows = (
         (_MIDDLE, angle - angle[0], r"tip angle $\theta$  [rad]"),
         (_LOWER, tip_height(motion.nodes), r"tip height $z$  $[L]$"),
