@@ -7,11 +7,6 @@ Errors and corrections are measured by the system's own norm, `size`, in units o
 It does not change when the system turns, and a small motion is computed as accurately as a large
 one. A rod measures tangents, not positions: their errors are what the energy and the lengths feel.
 
-A frozen Newton matrix goes stale because the system turns rather than because time passes. It is
-therefore used in the orientation that it was made in: the residual is turned back, the solution
-forth. That of a motion in a plane is made in the orientation of this plane and without what would
-be zero there; a motion is in a plane where it is off it by less than a step may be in error.
-
 In the co-rotating frame positions are y = Q(-angle) x and the turning rate Omega is one more
 unknown, fixed by the condition that the motion in the frame has no component along the rotation:
 
@@ -25,37 +20,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from undula.compiled import kernel, overwrite
-from undula.numerics.memory import (
-    CONTRACTION,
-    DISPLACEMENT,
-    FACTORED_ANGLE,
-    FACTORED_C,
-    FACTORISATIONS,
-    IN_FRAME,
-    ORDER,
-    PLANAR,
-    SOLVES,
-    STEP,
-)
+from undula.compiled import kernel
+from undula.numerics.frozen import is_stale, refactor, solve_frozen
+from undula.numerics.memory import CONTRACTION, IN_FRAME, ORDER, STEP
 from undula.numerics.schemes import BackwardDifferentiation
-from undula.numerics.system import (
-    RATES,
-    constraint_error,
-    factor,
-    generator,
-    matrix,
-    planar_factor,
-    planar_matrix,
-    planar_solve,
-    plane,
-    rates,
-    residual,
-    rotate,
-    size,
-    solve,
-    weigh,
-)
+from undula.numerics.system import RATES, constraint_error, generator, rates, residual, size
 
 #: Corrections a step may take before its matrix is made anew or its length is cut.
 MOST_CORRECTIONS = 5
@@ -157,79 +126,13 @@ def spread(system: Any, work: Any, in_frame: Any, turn: Any) -> None:
 
 
 @kernel
-def is_stale(system: Any, memory: Any, options: Any, work: Any, c: Any, angle: Any) -> Any:
-    """Tell whether the factored matrix is no longer fit for the step at hand.
-
-    In the frame it comes with a border proportional to the displacement, which has to be fresh in
-    proportion.
-    """
-    farthest = options.stale_after
-    if memory.count[IN_FRAME] == 1:
-        farthest *= min(1.0, memory.real[DISPLACEMENT])
-    if abs(c / memory.real[FACTORED_C] - 1.0) > 1e-12:
-        return True
-    turned = work.y
-    if angle != 0.0:
-        turned = work.correction
-        rotate(system, work.y, -angle, turned)
-    for i in range(work.y.shape[0] - 1, -1, -1):  # a free end, which moves farthest, comes last
-        moved = abs(turned[i] - memory.factored_at[i]) * options.mask[i]
-        if not moved <= farthest:
-            return True
-    return False
-
-
-@kernel
-def refactor(system: Any, memory: Any, work: Any, c: Any, scale: Any, turn: Any) -> Any:
-    """Make and factor the Newton matrix at the state in `work`; False where it is singular."""
-    in_frame, azimuth, off = memory.count[IN_FRAME] == 1, 0.0, math.inf
-    if not in_frame:
-        azimuth, off = plane(system, work.y, work.w)
-    memory.real[FACTORED_C] = c
-    memory.real[FACTORED_ANGLE] = work.predicted[work.y.shape[0]]
-    memory.count[FACTORISATIONS] += 1
-    if off <= scale:
-        memory.count[PLANAR] = 1
-        memory.real[FACTORED_ANGLE] -= azimuth
-        if azimuth == 0.0:
-            overwrite(memory.factored_at, work.y)
-        else:
-            rotate(system, work.y, -azimuth, memory.factored_at)
-        planar_matrix(system, work.y, work.w, azimuth, c, memory.factors)
-        regular = planar_factor(system, memory.factors)
-    else:
-        memory.count[PLANAR] = 0
-        overwrite(memory.factored_at, work.y)
-        matrix(system, work.y, work.w, c, turn if in_frame else 0.0, memory.factors)
-        regular = factor(system, memory.factors)
-    if not regular:
-        memory.real[FACTORED_C] = 0.0
-        return False
-    if in_frame:
-        weigh(system, work.y, work.turning, memory.border)
-        solve(system, memory.factors, memory.border)
-        memory.count[SOLVES] += 1
-    return True
-
-
-@kernel
-def one_correction(
-    system: Any, memory: Any, options: Any, work: Any, c: Any, turn: Any, angle: Any
-) -> Any:
+def one_correction(system: Any, memory: Any, options: Any, work: Any, c: Any, turn: Any) -> Any:
     """Apply one Newton correction; return its size, that of the turn included, and the new turn."""
     n = work.y.shape[0]
     in_frame = memory.count[IN_FRAME] == 1
     delta, slid = work.correction, 0.0
     residual(system, work.y, work.w, c, delta)
-    if angle != 0.0:
-        rotate(system, delta, -angle, delta)
-    if memory.count[PLANAR] == 1:
-        planar_solve(system, memory.factors, delta)
-    else:
-        solve(system, memory.factors, delta)
-    memory.count[SOLVES] += 1
-    if angle != 0.0:
-        rotate(system, delta, angle, delta)
+    solve_frozen(system, memory, work, delta)
     if in_frame:
         slip = dot(work.phase, work.y, options.mask) - dot(work.phase, delta, options.mask)
         turn_change = slip / dot(work.phase, memory.border, options.mask)
@@ -256,13 +159,10 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
             work.change[i] = 0.0
         turn = work.psi[n] if in_frame else 0.0  # extrapolates the rate
         spread(system, work, in_frame, turn)
-        angle = 0.0 if in_frame else work.predicted[n] - memory.real[FACTORED_ANGLE]
-        fresh = attempt == 1 or is_stale(system, memory, options, work, c, angle)
-        if fresh:
-            if not refactor(system, memory, work, c, scale, turn):
-                break
-            angle = 0.0 if in_frame else work.predicted[n] - memory.real[FACTORED_ANGLE]
-        if iterate(system, memory, options, work, c, scale, turn, angle):
+        fresh = attempt == 1 or is_stale(system, memory, options, work, c)
+        if fresh and not refactor(system, memory, work, c, scale, turn):
+            break
+        if iterate(system, memory, options, work, c, scale, turn):
             return True
         memory.real[CONTRACTION] = 1.0
         if fresh:
@@ -272,14 +172,14 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
 
 @kernel
 def iterate(
-    system: Any, memory: Any, options: Any, work: Any, c: Any, scale: Any, turn: Any, angle: Any
+    system: Any, memory: Any, options: Any, work: Any, c: Any, scale: Any, turn: Any
 ) -> Any:
     """Correct with one factored matrix until the rest is negligible; False where it is not."""
     in_frame = memory.count[IN_FRAME] == 1
     allowed = CONSTRAINT_IN_RTOL * options.rtol
     previous = 0.0
     for m in range(MOST_CORRECTIONS):
-        found, turn = one_correction(system, memory, options, work, c, turn, angle)
+        found, turn = one_correction(system, memory, options, work, c, turn)
         if not np.isfinite(found) or (m > 0 and found > DIVERGENCE * previous):
             return False
         if m > 0 and previous > 0.0:
