@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from undula.analysis.observables import tip_height, winding_angle
+from undula.analysis.observables import tip_height
 from undula.errors import InputError
 from undula.views import style
 from undula.views.scene import Floats
@@ -81,7 +81,8 @@ def _draw_column(
     picked = late[np.linspace(0, len(late) - 1, min(_SHAPES, len(late))).astype(int)]
     space = space_axes(figure, (left, _UPPER[0], 0.96 * width, _UPPER[1]), motion.nodes[late])
     draw_shapes(space, motion.nodes[picked])
-    angle = winding_angle(motion.nodes[:, -1:])
+    tip = motion.nodes[:, -1]
+    angle = np.unwrap(np.arctan2(tip[:, 1], tip[:, 0]))
     rows = (
         (_MIDDLE, angle - angle[0], r"tip angle $\theta$  [rad]"),
         (_LOWER, tip_height(motion.nodes), r"tip height $z$  $[L]$"),
