@@ -1,5 +1,6 @@
-"""The cache of compiled code notices every change of the package."""
+"""The cache of compiled code notices every change of what is compiled, and of nothing else."""
 
+import re
 import shutil
 import subprocess
 import sys
@@ -27,17 +28,20 @@ SHOW = "from toy.outer import outer; print(outer(1.0), sum(outer.stats.cache_hit
 
 def digest_of(package: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.setattr(compiled, "PACKAGE", package)
-    return compiled.package_digest.__wrapped__()
+    return compiled.kernel_digest.__wrapped__()
 
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """Return the folder of a package with a file in a folder of its own."""
-    inner = tmp_path / "package" / "inner"
-    inner.mkdir(parents=True)
-    (inner.parent / "one.py").write_text("a = 1\n")
-    (inner / "two.py").write_text("b = 2\n")
-    return inner.parent
+    """Return the folder of a package with files on floors of their own."""
+    root = tmp_path / "package"
+    for floor in ("numerics", "analysis"):
+        (root / floor).mkdir(parents=True)
+    (root / "one.py").write_text("a = 1\n")
+    (root / "numerics" / "two.py").write_text("b = 2\n")
+    (root / "analysis" / "sums.py").write_text("from undula.compiled import entry\n")
+    (root / "analysis" / "words.py").write_text("c = 3\n")
+    return root
 
 
 def test_the_digest_of_the_same_sources_is_the_same_wherever_they_lie(
@@ -48,13 +52,33 @@ def test_the_digest_of_the_same_sources_is_the_same_wherever_they_lie(
     assert digest_of(package, monkeypatch) == digest_of(elsewhere, monkeypatch)
 
 
-@pytest.mark.parametrize("name", ["one.py", "inner/two.py"])
-def test_the_digest_changes_with_a_character_of_any_file(
+@pytest.mark.parametrize("name", ["one.py", "numerics/two.py", "analysis/sums.py"])
+def test_the_digest_changes_with_a_character_of_any_file_that_is_compiled(
     package: Path, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = digest_of(package, monkeypatch)
-    (package / name).write_text("a = 3\n")
+    with (package / name).open("a") as source:
+        source.write("#")
     assert digest_of(package, monkeypatch) != before
+
+
+def test_the_digest_stays_when_a_file_changes_of_which_nothing_is_compiled(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = digest_of(package, monkeypatch)
+    (package / "analysis" / "words.py").write_text("c = 4\n")
+    assert digest_of(package, monkeypatch) == before
+
+
+def test_compiled_functions_outside_their_floors_take_nothing_from_other_files() -> None:
+    # What they took from there could change without a new digest.
+    for source in compiled.PACKAGE.rglob("*.py"):
+        place, text = source.relative_to(compiled.PACKAGE), source.read_text("utf-8")
+        if place.parts[0] in (*compiled.COMPILED_FLOORS, place.name):
+            continue
+        if re.search(r"import .*\b(entry|kernel|kernel_in_order)\b", text):
+            taken = re.findall(r"^from (undula\S*) import", text, flags=re.MULTILINE)
+            assert set(taken) <= {"undula.compiled", "undula.lent"}, place
 
 
 def test_the_digest_changes_when_a_file_comes_goes_or_is_renamed(

@@ -1,8 +1,8 @@
-"""Compilation of kernels, with an on-disk cache that notices every change of the package.
+"""Compilation of kernels, with an on-disk cache that notices every change of what is compiled.
 
 numba's own cache looks at the one file that holds a function, so an edited kernel would go on
 running in its old form wherever another file calls it. Here every cached function is stamped with a
-digest of all sources of the package: any change of any file makes all of them new.
+digest of all sources that compiled code is made of: any change of any of them makes all of it new.
 
 Kernels are inlined into such functions, and optimised there and nowhere else.
 """
@@ -19,18 +19,27 @@ from numba.extending import register_jitable
 PACKAGE = Path(__file__).resolve().parent
 
 
+#: The floors that compiled code takes functions and constants from, in any of their files.
+COMPILED_FLOORS = ("numerics", "models")
+#: What a file elsewhere imports to have functions compiled.
+_COMPILES = b"undula.compiled"
+
+
 @cache
-def package_digest() -> str:
-    """Digest of every Python source of the package: the version of its compiled code."""
+def kernel_digest() -> str:
+    """Digest of every source that compiled code is made of: the version of that code."""
     digest = hashlib.sha256()
     for source in sorted(PACKAGE.rglob("*.py")):
-        digest.update(source.relative_to(PACKAGE).as_posix().encode())
-        digest.update(source.read_bytes())
+        place, content = source.relative_to(PACKAGE), source.read_bytes()
+        floor = place.parts[0] if len(place.parts) > 1 else None
+        if floor in (None, *COMPILED_FLOORS) or _COMPILES in content:
+            digest.update(place.as_posix().encode())
+            digest.update(content)
     return digest.hexdigest()
 
 
 def _stamped_by_package(locator: Any) -> Any:
-    """Return numba's cache `locator`, restricted to this package and stamped with its digest."""
+    """Return numba's cache `locator`, restricted to this package and stamped with the digest."""
 
     class PackageLocator(locator):  # type: ignore[misc]
         @classmethod
@@ -40,7 +49,7 @@ def _stamped_by_package(locator: Any) -> Any:
             return super().from_function(py_func, py_file)
 
         def get_source_stamp(self) -> str:
-            return package_digest()
+            return kernel_digest()
 
     return PackageLocator
 
