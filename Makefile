@@ -9,6 +9,9 @@ DEV := $(VENV)/.installed-dev
 BENCH := $(VENV)/.installed-bench
 INPUTS := pyproject.toml constraints.txt
 
+# On all processors; the tests of a file share what they have computed, and stay together.
+PARALLEL := -n logical --dist loadfile
+
 # The first interpreter that starts and is new enough. A name on the PATH may be an empty shim.
 CANDIDATES := python3.11 python3 python3.12 python3.13
 FIND_PYTHON = for p in $(CANDIDATES); do \
@@ -30,10 +33,10 @@ run: $(RUN)
 	$(BIN)/undula run examples/spinning.toml --out results/spinning --overwrite
 
 test: lint docs
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(PARALLEL)
 
 test-slow: $(DEV)
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest $(PARALLEL) -m slow
 
 lint: $(DEV)
 	$(BIN)/ruff check .
@@ -54,7 +57,7 @@ bench: $(BENCH)
 	$(BIN)/python benchmarks/work_precision.py
 
 clean:
-	rm -rf $(VENV) site build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis .benchmarks
+	rm -rf $(VENV) site build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	find src tests benchmarks examples -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
 
 $(MADE):
