@@ -2,10 +2,11 @@
 
 import json
 import math
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+
+from undula.app.streams import Guarded, err, out
 
 #: Exit status of every command.
 DONE, BAD_INPUT, STOPPED_EARLY = 0, 2, 3
@@ -33,17 +34,15 @@ def reply(answer: Answer, text: str, *, as_json: bool) -> None:
     text
         The same answer for people.
     as_json
-        Which of the two to give: the first as exactly one JSON object.
+        Which of the two to give: the first as exactly one JSON object, in ASCII whatever the
+        locale.
     """
-    if not as_json:
-        _write(sys.stdout, text)
-        return
-    _write(sys.stdout, json.dumps(finite(answer), indent=2, allow_nan=False, ensure_ascii=False))
+    _write(out(), json.dumps(finite(answer), indent=2, allow_nan=False) if as_json else text)
 
 
 def notice(sentence: str) -> None:
     """Tell something that is not the answer, on standard error."""
-    _write(sys.stderr, f"undula: {sentence}")
+    _write(err(), f"undula: {sentence}")
 
 
 def refuse(sentence: str, *, as_json: bool) -> int:
@@ -79,9 +78,6 @@ def finite(value: Any) -> Any:
     return value
 
 
-def _write(stream: Any, text: str) -> None:
-    from rich.console import Console
-
-    # No wrapping and no mark-up: names of files have to come out as they are.
-    console = Console(file=stream, highlight=False, markup=False, emoji=False)
-    console.print(text, soft_wrap=True)
+def _write(stream: Guarded, text: str) -> None:
+    stream.write(f"{text}\n")
+    stream.flush()

@@ -4,9 +4,10 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from undula.app.options import (
     Budget,
@@ -27,10 +28,24 @@ from undula.errors import InputError
 # Matrices here are small: a second thread of the linear algebra makes them slower, not faster.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+
+class _Commands(TyperGroup):
+    """Commands that are listed with their whole first sentence; Click would cut it short."""
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        command = super().get_command(ctx, cmd_name)
+        if command is not None:
+            command.short_help = (command.help or "").partition("\n\n")[0]
+        return command
+
+
 app = typer.Typer(
     name="undula",
+    cls=_Commands,
     add_completion=False,
     pretty_exceptions_enable=False,
+    # As mark-up, words in square brackets would be commands to rich and not come out.
+    rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
@@ -46,12 +61,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        The exit status: 0 done, 2 bad input, 3 stopped early with results kept, 130 interrupted
-        before there was a result.
+        The exit status: 0 done, 2 bad input, 3 stopped early with results kept or an answer that
+        standard output did not take, 130 interrupted before there was a result.
     """
+    from undula.app.answers import STOPPED_EARLY, notice
+    from undula.app.streams import guarded_streams
+
     given = list(sys.argv[1:] if arguments is None else arguments)
+    with guarded_streams() as answers:
+        status = _carry_out(given or ["--help"])
+        answers.flush()
+        if answers.trouble is not None:
+            notice(
+                f"the answer does not fit onto standard output ({answers.trouble.strerror}); make"
+                " room or send it elsewhere; files that were written are kept"
+            )
+            status = status or STOPPED_EARLY
+    return status
+
+
+def _carry_out(given: Sequence[str]) -> int:
+    """Run a command; tell a mistake in one sentence, and return the exit status."""
     try:
-        return int(app(given or ["--help"], prog_name="undula", standalone_mode=False) or 0)
+        return int(app(given, prog_name="undula", standalone_mode=False) or 0)
     except KeyboardInterrupt:
         return 130
     except Exception as error:

@@ -1,9 +1,11 @@
 """How far a long task is: a bar in a terminal, elsewhere a line every few seconds."""
 
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import IO, cast
+
+from undula.app.streams import err
 
 #: Called with the part that is done, from 0 to 1, and a few words.
 Meter = Callable[[float, str], None]
@@ -26,7 +28,7 @@ def meter(task: str) -> Iterator[Meter]:
         To be called as often as wanted; it shows what changed a few times a second in a terminal,
         and every few seconds otherwise.
     """
-    if sys.stderr.isatty():
+    if err().isatty():
         with _bar(task) as show:
             yield show
     else:
@@ -40,7 +42,7 @@ def _bar(task: str) -> Iterator[Meter]:
 
     words = TextColumn("{task.fields[words]}", markup=False)
     columns = (TextColumn("{task.description}"), BarColumn(24), TaskProgressColumn(), words)
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    with Progress(*columns, console=Console(file=cast(IO[str], err())), transient=True) as progress:
         shown = progress.add_task(task, total=1.0, words="")
         yield lambda part, said: progress.update(shown, completed=part, words=said)
 
@@ -52,7 +54,8 @@ def _lines(task: str) -> Meter:
         nonlocal last
         if time.monotonic() - last >= SECONDS_BETWEEN_LINES:
             last = time.monotonic()
-            sys.stderr.write(f"{task}: {words}\n")
-            sys.stderr.flush()
+            stream = err()
+            stream.write(f"{task}: {words}\n")
+            stream.flush()
 
     return show
