@@ -13,6 +13,7 @@ import xarray as xr
 from undula.analysis.motion import Motion
 from undula.analysis.run import Run
 from undula.models.units import FILAMENT_UNITS, Units
+from undula.models.words import model_words
 
 # Files of filaments have named their unit of time like this from the first on.
 _TIME = {FILAMENT_UNITS.time: "L^4 zeta_perp / B"}
@@ -30,7 +31,7 @@ def dataset_of(
     inputs : mapping, optional
         The complete input that made the run; by default the model's fields and the schedule's.
     load : str, optional
-        The load in words, for figures.
+        Model and load in words, for figures; by default those that their values make.
 
     Returns
     -------
@@ -44,7 +45,7 @@ def dataset_of(
         variables |= _variables(run.close_up, units, "close_")
     links = run.motion.nodes.shape[1] - 1
     complete = inputs or {"model": _fields(run.model), "time": _fields(run.schedule)}
-    summary = run.summary() | {"load": load or str(getattr(run.model, "load", ""))}
+    summary = run.summary() | {"load": load or model_words(run.model)}
     return xr.Dataset(
         variables,
         coords={

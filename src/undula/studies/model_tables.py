@@ -3,7 +3,7 @@
 Numbers are dimensionless: lengths in L, forces in B/L^2 for a filament and in K/L for a chain.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, InstanceOf, PlainSerializer, model_validator
@@ -254,21 +254,3 @@ class LoadTable(Table):
             # The load names its values as the keys are named.
             raise conflict(f"load.{str(error).removeprefix('TableLoad: ')}") from None
         return self
-
-    def tell(self, swept: Collection[str] = (), unit: str = "") -> str:
-        """Return the load in a few words, such as ``point force 75 at s = 0.8``.
-
-        The keys that a curve sweeps over are left out; a unit of force other than a filament's can
-        be named.
-        """
-        force = f"{self.force:.12g} {unit}".rstrip()
-        head = f"{self.profile} load" if "force" in swept else f"{self.profile} force {force}"
-        details = {
-            "position": f" at s = {self.position:.12g}",
-            "slope": f", slope {self.slope:.12g}",
-            "exponent": f", exponent {self.exponent:.12g}",
-            "s": f" ({len(self.s or ())} points)",
-            "beads": " on all" if self.beads == "all" else f" on {', '.join(map(str, self.beads))}",
-        }
-        told = [text for key, text in details.items() if key in self.dump() and key not in swept]
-        return head + "".join(told)

@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError, model_validator
 from undula.errors import InputError
 from undula.models.beads import BeadLoad
 from undula.models.units import FILAMENT_UNITS, chain_units
+from undula.models.words import words
 from undula.studies.complaints import explain
 from undula.studies.model_tables import LoadTable, ModelTable
 from undula.studies.overrides import apply_overrides, read_toml
@@ -76,11 +77,11 @@ class ModelInput(Table):
 
     def tell(self, swept: Collection[str] = ()) -> str:
         """Return model and load in a few words, without the keys that a curve sweeps over."""
-        keys = {key.removeprefix("load.") for key in swept}
-        if self.model.kind == "filament":
-            return self.load.tell(keys)
-        unit = chain_units(self.model.links).force
-        return f"chain of {self.model.links} links, {self.load.tell(keys, unit)}"
+        body, load = (
+            {name: getattr(table, name) for name in table.dump()}
+            for table in (self.model, self.load)
+        )
+        return words(body, self.load.profile, load, swept)
 
     def dump(self) -> dict[str, Any]:
         """Return the complete resolved input as plain JSON types.

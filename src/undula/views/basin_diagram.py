@@ -64,7 +64,7 @@ def basin_diagram(
     x, y = laid_out([name for name in names if basins.sizes[name] > 1] or names[:1])
     with style.figure_style():
         figure = Figure(figsize=_SIZE)
-        figure.text(0.022, 0.962, title or "", fontsize=11.5)
+        style.write_title(figure, title or "", (0.022, 0.962))
         verdicts = ordered(str(name) for name in basins["verdict"].values)
         patches = [Patch(color=look_of(verdict).colour, label=verdict) for verdict in verdicts]
         if y is None:

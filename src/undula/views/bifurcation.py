@@ -17,6 +17,7 @@ from undula.analysis.branch_records import Branch
 from undula.errors import InputError
 from undula.views import style
 from undula.views.labels_above import Label, label_above
+from undula.views.legends import fitting_legend
 from undula.views.named_branches import (
     DASHES,
     WIDTH,
@@ -156,13 +157,7 @@ def _name_all(
         handles.append(Patch(color=style.SHADOW, label="range over a cycle"))
     if points:
         handles.append(Line2D([], [], color=style.INK, ls="", marker="o", ms=4.5, label="runs"))
-    figure.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(_LEFT - 0.01, 0.945),
-        ncols=len(handles),
-        handlelength=2.4,
-    )
+    fitting_legend(figure, handles, (_LEFT - 0.01, 0.945), handlelength=2.4)
     if left_out:
         all_runs = left_out + len(points)
         note = f"{left_out} of {all_runs} runs left out: no frequency or value in these units"

@@ -15,6 +15,7 @@ from matplotlib.patches import Patch
 from undula.analysis.linear_results import GrowthCurve
 from undula.arrays import Array
 from undula.views import style
+from undula.views.legends import fitting_legend
 
 _HOPF = ("growth rate 0: Hopf curve", "-")
 _RINGING = ("edge of oscillation: frequency 0 below", "--")
@@ -69,9 +70,7 @@ def _name_boundaries(figure: Figure, *, unknown: bool) -> None:
     ]
     if unknown:
         handles.append(Patch(color=style.SHADOW, label="no value"))
-    figure.legend(
-        handles=handles, loc="upper left", bbox_to_anchor=(0.062, 0.935), ncols=3, handlelength=2.2
-    )
+    fitting_legend(figure, handles, (0.062, 0.935), handlelength=2.2)
 
 
 def _continued(squares: Array) -> Array:

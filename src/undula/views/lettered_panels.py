@@ -1,13 +1,13 @@
 """Panels of figures without a title: their letters, and the legend above them."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from undula.views import style
+from undula.views.legends import fitting_legend
 
 # Inches: from the left edge of a panel and from its top to its letter.
 _ASIDE, _ABOVE = 0.5, 0.09
@@ -33,15 +33,8 @@ def legend_above(figure: Figure, handles: Sequence[Artist], left: float) -> floa
     float
         Where the names end below, in parts of the figure's height.
     """
-    look: Any = {"handles": list(handles), "loc": "upper left", "handlelength": 2.6}
-    look["bbox_to_anchor"] = (left - 0.01, 0.995)
-    for rows in range(1, len(handles) + 1):
-        legend = figure.legend(ncols=-(-len(handles) // rows), **look)
-        box = legend.get_window_extent().transformed(figure.transFigure.inverted())
-        if box.x1 <= 1.0 or rows == len(handles):
-            break
-        legend.remove()
-    return float(box.y0)
+    legend = fitting_legend(figure, handles, (left - 0.01, 0.995), handlelength=2.6)
+    return float(legend.get_window_extent().y0 / figure.bbox.height)
 
 
 def quiet_line(axes: Axes, height: float = 0.0) -> None:

@@ -81,7 +81,7 @@ def mean_paths(
         raise InputError("no point of the store has kept its path yet; let the sweep go on")
     with style.figure_style():
         figure = Figure(figsize=_SIZE)
-        figure.text(0.022, 0.962, heading(store) if title is None else title, fontsize=11.5)
+        style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         axes = diagram_on(figure, drawn, (x, y), (_LEFT, _BOTTOM, _RIGHT - _LEFT, 0.8))
         top = place_legend(figure, [draw_borders(axes, borders)], _LEFT, 0.905) - 0.01
         axes.set_position((_LEFT, _BOTTOM, _RIGHT - _LEFT, top - _BOTTOM))

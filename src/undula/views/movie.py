@@ -109,7 +109,7 @@ def frame_times(scene: Scene, frames: int) -> Floats:
 def _build(scene: Scene, times: Floats) -> Stage:
     figure = Figure(figsize=_SIZE, dpi=_DOTS_PER_INCH)
     canvas: Any = FigureCanvasAgg(figure)
-    figure.text(0.022, 0.95, headline(scene), fontsize=11.5)
+    style.write_title(figure, headline(scene), (0.022, 0.95))
     clock = figure.text(0.022, 0.905, "", color=style.QUIET, animated=True)
     rows = draw_traces(figure, scene, (tip_row, energy_row), left=0.555, right=0.975, top=0.88)
     markers = tuple(

@@ -10,12 +10,12 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from undula.arrays import Array
 from undula.views import style
+from undula.views.legends import fitting_legend
 from undula.views.phase_points import axis_label, units_of
 
 #: A border: its name, the values of the parameter, and the forces, NaN where there is none. A
@@ -143,22 +143,16 @@ def place_legend(
     """
     for handles in rows:
         if handles:
-            legend = _fitting(figure, handles, (left, top))
+            legend = fitting_legend(
+                figure,
+                handles,
+                (left, top),
+                borderpad=0.1,
+                borderaxespad=0.0,
+                handlelength=_width_of(handles[0]),
+            )
             top -= float(legend.get_window_extent().height / figure.bbox.height) + 0.004
     return top
-
-
-def _fitting(figure: Figure, handles: Sequence[Artist], corner: tuple[float, float]) -> Legend:
-    """Return a legend in as few lines as the width of the figure allows."""
-    place: Any = {"loc": "upper left", "bbox_to_anchor": corner}
-    spare: Any = {"borderpad": 0.1, "borderaxespad": 0.0, "handlelength": _width_of(handles[0])}
-    for lines in range(1, len(handles) + 1):
-        columns = -(-len(handles) // lines)
-        legend = figure.legend(handles=list(handles), ncols=columns, **place, **spare)
-        if columns == 1 or legend.get_window_extent().x1 <= _INSIDE * figure.bbox.width:
-            break
-        legend.remove()
-    return legend
 
 
 def _width_of(handle: Artist) -> float:

@@ -86,7 +86,7 @@ def phase_diagram(
     right, above = diagram_axes(store)
     with style.figure_style():
         figure = Figure(figsize=_SIZE)
-        figure.text(0.022, 0.962, heading(store) if title is None else title, fontsize=11.5)
+        style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         if above is None:
             draw_line(figure, store, borders, contradicting)
         else:

@@ -75,7 +75,7 @@ def gallery(store: xr.Dataset, *, title: str | None = None) -> Figure:
     up = [0.0] if y is None else picked(store[y].values, _UP)
     with style.figure_style():
         figure = Figure(figsize=(_WIDTH, _HEIGHT))
-        figure.text(0.022, 0.962, heading(store) if title is None else title, fontsize=11.5)
+        style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         if y is None:
             size = _size_of_rows(len(across))
             _draw_cells(figure, store, _in_rows(dots, across, size), size)

@@ -51,7 +51,7 @@ def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> 
     scene = read_scene(run)
     with style.figure_style():
         figure = Figure(figsize=(10.0, 5.5))
-        figure.text(0.022, 0.955, headline(scene) if title is None else title, fontsize=11.5)
+        style.write_title(figure, headline(scene) if title is None else title, (0.022, 0.955))
         _draw_space(figure, scene.detail, shape_times(scene.detail, shapes))
         rows = (tip_row, energy_row, power_row)
         draw_traces(figure, scene, rows, left=0.545, right=0.975, top=0.885)

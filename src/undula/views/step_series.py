@@ -3,7 +3,6 @@
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import cycle
 
 import numpy as np
 import xarray as xr
@@ -12,22 +11,10 @@ from numpy.typing import NDArray
 from undula.errors import InputError
 from undula.views import style
 from undula.views.scene import Floats
+from undula.views.verdict_looks import look_of
 
 NEEDED = ("value", "direction", "verdict", "bending_energy_min", "bending_energy_max", "shapes")
 
-_COLOURS = {
-    "straight": style.QUIET,
-    "spinning": style.X_COLOUR,
-    "modulated spinning": "#56B4E9",
-    "planar flapping": style.Y_COLOUR,
-    "precessing flapping": style.ACTIVE_COLOUR,
-    "non-planar flapping": style.ENERGY_COLOUR,
-    "windmilling": style.Z_COLOUR,
-    "chaotic": style.INK,
-    "undecided": "#CC79A7",
-}
-# Of any other verdict.
-_FURTHER = ("#8c6d31", "#4d4dbf", "#a6761d", "#66a61e")
 # Room at both ends of the parameter axis, as a share of it.
 _ENDS = 0.02
 
@@ -97,10 +84,8 @@ def read_series(datasets: Sequence[xr.Dataset]) -> list[StepSeries]:
 
 
 def verdict_colours(verdicts: Sequence[str]) -> dict[str, str]:
-    """Give each verdict its colour: the known ones their own, others in their order."""
-    others = [verdict for verdict in dict.fromkeys(verdicts) if verdict not in _COLOURS]
-    given = _COLOURS | dict(zip(others, cycle(_FURTHER), strict=False))
-    return {verdict: given[verdict] for verdict in dict.fromkeys(verdicts)}
+    """Give each verdict the colour that it has in every figure, in the order of appearance."""
+    return {verdict: look_of(verdict).colour for verdict in dict.fromkeys(verdicts)}
 
 
 def _read(dataset: xr.Dataset) -> StepSeries:

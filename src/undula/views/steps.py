@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 
 from undula.views import style
 from undula.views.labels_above import label_above
+from undula.views.legends import fitting_legend
 from undula.views.step_energies import (
     ALONE,
     draw_energies,
@@ -72,7 +73,7 @@ def step_diagram(
     with style.figure_style():
         figure = Figure(figsize=(max(10.0, _COLUMN * len(series)), _HEIGHT))
         alone = series[0].load if len(series) == 1 else ""
-        figure.text(_in(figure, 0.22), 0.955, alone if title is None else title, fontsize=11.5)
+        style.write_title(figure, alone if title is None else title, (_in(figure, 0.22), 0.955))
         _name_all(figure, series, colours, thresholds=any(known))
         top = _draw_galleries(figure, series, colours)
         _draw_panels(figure, series, known, colours, bottom=top + _LABEL / _HEIGHT)
@@ -110,6 +111,8 @@ def _draw_galleries(
     pitch = (columns[0][1] - columns[0][0]) / across
     inches = pitch * figure.get_figwidth()
     cells = [_cells(one, rows * across, colours, inches) for one in series]
+    # Every regime is shown, also where there are more of them than places.
+    rows = max(rows, *(-(-len(some) // across) for some in cells))
     every = [cell for some in cells for cell in some]
     view, words = common_view(every), _GAP + LINE * max(len(cell.words) for cell in every)
     # Half of the height is for the galleries, at most.
@@ -180,10 +183,4 @@ def _name_all(
         ]
     if thresholds:
         handles.append(Line2D([], [], color=style.INK, lw=0.8, ls="--", label="solved threshold"))
-    figure.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(_in(figure, 0.14), 0.945),
-        ncols=len(handles),
-        handletextpad=0.3,
-    )
+    fitting_legend(figure, handles, (_in(figure, 0.14), 0.945), handletextpad=0.3)

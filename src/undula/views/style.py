@@ -12,6 +12,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from undula.models.units import FILAMENT_UNITS
@@ -50,6 +51,8 @@ _PARAMETER_LABELS = {
     "model.base_spring": r"base spring $K_0$  $[K]$",
 }
 _PALE, _DARK = 0.08, 0.97
+# Points: a title, and one that is long.
+_TITLE, _SMALLEST = 11.5, 8.0
 _SETTINGS = {
     "font.family": ["DejaVu Sans"],
     "font.size": 9.0,
@@ -159,11 +162,39 @@ def parameter_label(name: str) -> str:
 def headed_figure(title: str, *, paper_time: bool) -> Figure:
     """Start a figure of 10 by 5.5 inches with a title, and a word on an unusual time unit."""
     figure = Figure(figsize=(10.0, 5.5))
-    figure.text(0.022, 0.955, title, fontsize=11.5)
+    right = 0.978
     if paper_time:
         note = r"time unit of the printed equation, $T/\gamma$"
-        figure.text(0.978, 0.955, note, ha="right", color=QUIET)
+        drawn = figure.text(right, 0.955, note, ha="right", color=QUIET)
+        right = float(drawn.get_window_extent().x0 / figure.bbox.width) - 0.02
+    write_title(figure, title, (0.022, 0.955), right=right)
     return figure
+
+
+def write_title(
+    figure: Figure, title: str, place: tuple[float, float], *, right: float = 0.978
+) -> None:
+    """Write the line above a figure, smaller if it is long, and cut short if it is very long.
+
+    Parameters
+    ----------
+    figure : Figure
+    title : str
+    place : tuple of float
+        Its lower left corner, in parts of the figure.
+    right : float
+        Where it has to end, in parts of the figure's width.
+    """
+    text = figure.text(*place, title, fontsize=_TITLE, gid="title")
+    room = (right - place[0]) * figure.bbox.width
+    text.set_fontsize(min(_TITLE, max(_SMALLEST, _TITLE * room / max(_width(text), 1.0))))
+    while _width(text) > room and len(title) > 1:
+        title = title[: min(len(title) - 1, int(len(title) * room / _width(text)))]
+        text.set_text(title.rstrip() + " …")
+
+
+def _width(text: Text) -> float:
+    return float(text.get_window_extent().width)
 
 
 def _symbols(unit: str) -> str:

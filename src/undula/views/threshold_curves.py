@@ -12,6 +12,7 @@ from undula.arrays import Array
 from undula.errors import InputError
 from undula.views import style
 from undula.views.growth import set_span, start_at_zero
+from undula.views.legends import fitting_legend
 
 # Colours, and markers that tell the curves apart without them.
 _LOOKS = (
@@ -68,9 +69,8 @@ def threshold_curves(
         _set_spans(axes, curves)
         axes.set_xlabel(style.parameter_label(parameter))
         axes.set_ylabel(style.force_label(units))
-        handles, names = axes.get_legend_handles_labels()
-        place: Any = {"loc": "upper left", "bbox_to_anchor": (0.08, 0.935), "handlelength": 2.4}
-        figure.legend(handles, names, ncols=len(names), **place)
+        handles = axes.get_legend_handles_labels()[0]
+        fitting_legend(figure, handles, (0.08, 0.935), handlelength=2.4)
     return figure
 
 

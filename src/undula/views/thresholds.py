@@ -11,6 +11,7 @@ from undula.analysis.linear_results import CriticalCurve
 from undula.arrays import Array
 from undula.views import style
 from undula.views.growth import draw_points, set_span, start_at_zero
+from undula.views.legends import fitting_legend
 
 _REGIONS = (
     ("straight, monotone decay", style.GROUND),
@@ -100,13 +101,7 @@ def _force_span(axes: Axes, forces: Array, searched: Array) -> tuple[float, floa
 def _name_all(figure: Figure, axes: Axes) -> None:
     regions = [Patch(color=colour, label=name) for name, colour in _REGIONS]
     lines = axes.get_legend_handles_labels()[0]
-    figure.legend(
-        handles=[*lines, *regions],
-        loc="upper left",
-        bbox_to_anchor=(0.08, 0.935),
-        ncols=len(lines) + len(regions),
-        handlelength=2.2,
-    )
+    fitting_legend(figure, [*lines, *regions], (0.08, 0.935), handlelength=2.2)
 
 
 def _tell_gaps(axes: Axes, curve: CriticalCurve) -> None:

@@ -1,6 +1,7 @@
 """Quantities against time: the whole run on the left, its last few periods on the right."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,11 +15,19 @@ from undula.views.scene import PERIODS_IN_FOCUS, Floats, Scene, turning_points
 
 # Samples in a span of a band where there are too few a cycle to draw them as a line.
 _SPARSE_SPAN = 300
+_AT_START = 0.012
+# With fewer spans a band would be a few blocks: the samples themselves tell more.
+_FEWEST_SPANS = 12
 _CYCLES_AS_LINES = 25
 _BANDS = 150
 _POINTS = 800
 _POINTS_PER_CYCLE = 48
 _MARK_SAMPLES_BELOW = 60
+# A quantity that changes by less than this part of itself is drawn as constant, beside the way to
+# its value: finer marks would be those of round-off.
+_CONSTANT = 1e-3
+# What has decayed to less than this part of its greatest value has none of its own to be seen.
+_NOTHING = 1e-6
 
 
 def draw_traces(
@@ -105,11 +114,14 @@ def _draw_row(scene: Scene, row: Row, near: Row, line: list[Axes]) -> None:
     _shade(scene, whole)
     for curve in row.curves:
         cycles = _cycles(scene, curve.samples)
-        if cycles > _CYCLES_AS_LINES:
+        if cycles > _CYCLES_AS_LINES and scene.interpolable:
             _draw_band(whole, scene, curve, cycles)
+        elif cycles > _CYCLES_AS_LINES:
+            _draw_samples(whole, scene, curve)
         else:
             _draw_line(whole, scene, curve, (scene.start, scene.end))
-    whole.set_xlim(scene.start, scene.end)
+    # What begins at once would lie on the axis itself.
+    whole.set_xlim(scene.start - _AT_START * scene.duration, scene.end)
     if len(line) == 2 and scene.focus is not None:
         for curve in near.curves:
             _draw_line(line[1], scene.detail, curve, scene.focus)
@@ -126,7 +138,7 @@ def _draw_line(axes: Axes, scene: Scene, curve: Curve, window: tuple[float, floa
     look = curve.dashes if scene.interpolable else "none"
     axes.plot(times, curve.at(times), linestyle=look, color=curve.colour, lw=curve.width)
     inside = (scene.times >= window[0]) & (scene.times <= window[1])
-    if np.count_nonzero(inside) < _MARK_SAMPLES_BELOW:
+    if not scene.interpolable or np.count_nonzero(inside) < _MARK_SAMPLES_BELOW:
         axes.plot(scene.times[inside], curve.samples[inside], ".", color=curve.colour, ms=3.5)
 
 
@@ -138,12 +150,22 @@ def _cycles(scene: Scene, values: Floats) -> float:
 
 
 def _draw_band(axes: Axes, scene: Scene, curve: Curve, cycles: float) -> None:
-    if scene.interpolable:
-        dense = curve_times(scene, scene.start, scene.end, int(_POINTS_PER_CYCLE * cycles))
-        times, low, high = band(dense, curve.at(dense), cycles)
-    else:
-        # A span needs many samples to come near the extremes: few a cycle beat with the cycles.
-        times, low, high = band(scene.times, curve.samples, len(scene.times) / _SPARSE_SPAN)
+    dense = curve_times(scene, scene.start, scene.end, int(_POINTS_PER_CYCLE * cycles))
+    _fill(axes, curve, *band(dense, curve.at(dense), cycles))
+
+
+def _draw_samples(axes: Axes, scene: Scene, curve: Curve) -> None:
+    """Draw a curve of too few samples a cycle: between what bounds it lies, or its samples."""
+    # A span needs many samples to come near the extremes: few a cycle beat with the cycles.
+    spans = len(scene.times) / _SPARSE_SPAN
+    if spans >= _FEWEST_SPANS:
+        _fill(axes, curve, *band(scene.times, curve.samples, spans))
+        return
+    look: Any = {"color": curve.colour, "ms": 3.6, "alpha": 0.8, "mew": 0.0}
+    axes.plot(scene.times, curve.samples, ".", **look)
+
+
+def _fill(axes: Axes, curve: Curve, times: Floats, low: Floats, high: Floats) -> None:
     axes.fill_between(times, low, high, color=curve.colour, alpha=0.22, lw=0)
     for edge in (low, high):
         axes.plot(times, edge, curve.dashes, color=curve.colour, lw=0.6 * curve.width)
@@ -159,15 +181,32 @@ def _shade(scene: Scene, axes: Axes) -> None:
 
 def _scale(line: list[Axes], curves: Sequence[Curve]) -> None:
     """Give both columns one scale, which a short spike at the start does not decide."""
-    bounds = np.array([_bounds(curve.samples) for curve in curves])
-    low, high = float(bounds[:, 0].min()), float(bounds[:, 1].max())
-    margin = 0.1 * (high - low) or max(0.1 * abs(high), 1e-3)
+    low, high = limits([curve.samples for curve in curves])
     for axes in line:
-        axes.set_ylim(low - margin, high + margin)
+        axes.set_ylim(low, high)
         axes.yaxis.set_major_locator(MaxNLocator(4))
     line[0].xaxis.set_major_locator(MaxNLocator(5))
     for axes in line[1:]:
         axes.xaxis.set_major_locator(MaxNLocator(3, prune="lower"))
+
+
+def limits(curves: Sequence[Floats]) -> tuple[float, float]:
+    """Return the limits of an axis for some curves, each (m,), in the course of time.
+
+    They hold the second half of each curve and nearly all of the first. Where that is constant but
+    for round-off, they hold the way to it as well, as far as it is no spike.
+    """
+    bounds = np.array([_bounds(values) for values in curves])
+    low, high = float(bounds[:, 0].min()), float(bounds[:, 1].max())
+    least, most = min(map(np.min, curves)), max(map(np.max, curves))
+    value, largest = max(abs(low), abs(high)), max(abs(float(least)), abs(float(most)))
+    if value < _NOTHING * largest:
+        low, high = float(least), float(most)
+    elif high - low < _CONSTANT * value:
+        low, high = max(float(least), low - value), min(float(most), high + value)
+    value = max(abs(low), abs(high))
+    margin = 0.1 * (high - low if high - low > _CONSTANT * value else value) or 1e-3
+    return low - margin, high + margin
 
 
 def _bounds(values: Floats) -> tuple[float, float]:
