@@ -68,8 +68,12 @@ def test_the_command_of_a_row_gives_its_value(folder, capsys) -> None:
 
 def test_a_quick_report_leaves_out_what_needs_the_full_one(folder, capsys) -> None:
     _, answer = reproduce(capsys, folder, "onset", "--quick", "--workers", "1")
-    assert [row["claim"] for row in answer["claims"]] == ["hopf"]
-    assert "--quick" in answer["claims"][0]["command"]
+    judged, left_out = answer["claims"]
+    assert (judged["claim"], judged["verdict"]) == ("hopf", "confirmed")
+    assert "--quick" in judged["command"]
+    assert (left_out["claim"], left_out["verdict"]) == ("spread", "not judged here")
+    assert left_out["reason"] == "slow is not computed in the quick report"
+    assert left_out["command"] == "undula reproduce onset"
 
 
 def test_a_wrong_published_value_is_told_by_the_exit_status(tmp_path, capsys, monkeypatch) -> None:
@@ -132,7 +136,11 @@ def test_a_task_that_fails_is_told_and_the_others_are_done(tmp_path, capsys, mon
     said = capsys.readouterr()
     assert status == 3
     assert "linnear" in said.err
-    assert [row["claim"] for row in json.loads(said.out)["claims"]] == ["hopf"]
+    rows = json.loads(said.out)["claims"]
+    assert [(row["claim"], row["verdict"]) for row in rows] == [
+        ("hopf", "confirmed"),
+        ("spread", "not judged here"),
+    ]
 
 
 @pytest.mark.slow

@@ -1,16 +1,17 @@
 """Claims with what they came to: the rows of the table, in plain JSON types and for people."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from undula.app.catalogue_tasks import Job
-from undula.studies.claims import Answer, judge
+from undula.studies.claims import Answer, Outcome, judge
 from undula.studies.items import Claim, Item
+from undula.studies.stated import other_values, values_of
 
-#: What stands for a verdict where a claim could not be checked.
-UNCHECKED = "not checked"
+#: What stands for a verdict where a claim could not be checked, and where it was not computed.
+UNCHECKED, NOT_JUDGED = "not checked", "not judged here"
 
 
 def row_of(
@@ -21,8 +22,9 @@ def row_of(
     jobs: Mapping[str, Job],
     *,
     quick: bool,
+    wanted: bool,
 ) -> dict[str, Any] | None:
-    """Return the row of a claim; None if what it needs has not been computed, or only in full.
+    """Return the row of a claim; None if what it needs has not been computed nor asked for.
 
     Parameters
     ----------
@@ -36,20 +38,71 @@ def row_of(
         All jobs, for the commands behind the value.
     quick
         Whether the report is the quick one.
+    wanted
+        Whether the item has been asked for: then a claim that cannot be judged is told as well.
     """
-    if quick and claim.only_full:
-        return None
-    asked = [local for local in (*item.tasks, *item.uses) if local in claim.asks]
-    if any(local not in answers for local in asked):
-        return None
-    outcome = judge(claim, answers)
     places = {local: f"{name}/{local}" for local in item.tasks} | item.uses
+    asked = [local for local in places if local in claim.asks]
+    why = _why_not(claim, {local: jobs.get(places[local]) for local in asked}, answers, quick=quick)
+    if why:
+        return (
+            _row(name, item, claim, Outcome(None, None, None, why), NOT_JUDGED) if wanted else None
+        )
+    outcome = judge(claim, answers)
+    row = _row(name, item, claim, outcome, outcome.verdict or UNCHECKED)
+    return row | {
+        "as_expected": outcome.verdict == claim.expected,
+        "command": f"undula reproduce {name}{' --quick' if quick else ''}",
+        "steps": [jobs[places[local]].told for local in asked],
+    }
+
+
+def left_out(asked: Iterable[str], known: Collection[str], *, quick: bool) -> str:
+    """Return why something is not there that needs tasks; empty if all of them are done.
+
+    Parameters
+    ----------
+    asked
+        Names of the tasks.
+    known
+        Names of those whose answers are there.
+    quick
+        Whether the report is the quick one.
+    """
+    lacking = [name for name in asked if name not in known]
+    if not lacking:
+        return ""
+    does = "is not" if len(lacking) == 1 else "are not"
+    report = "in the quick report" if quick else "yet"
+    return f"{', '.join(lacking)} {does} computed {report}"
+
+
+def _why_not(
+    claim: Claim, jobs: Mapping[str, Job | None], answers: Mapping[str, Answer], *, quick: bool
+) -> str:
+    """Return why a claim is not to be judged from these jobs; empty if it is."""
+    if quick and claim.only_full:
+        return "the coarser grid of the quick report does not show it"
+    missing = left_out(jobs, answers, quick=quick)
+    if missing:
+        return missing
+    computed = {
+        local: values_of(job.command)
+        for local, job in jobs.items()
+        if job is not None and claim.at and local in claim.judged_by
+    }
+    return other_values(claim.at, computed)
+
+
+def _row(name: str, item: Item, claim: Claim, outcome: Outcome, verdict: str) -> dict[str, Any]:
+    """Return the row of a claim as far as it does not depend on how it was computed."""
     return {
         "item": name,
         "title": item.title,
         "claim": claim.name,
         "says": claim.says,
         "where": claim.where,
+        "at": claim.at,
         "published": claim.published if claim.over is None else claim.over,
         "over_a_range": claim.over is not None,
         "value": outcome.value,
@@ -57,16 +110,16 @@ def row_of(
         "unit": claim.unit,
         "within": claim.within,
         "because": claim.because,
-        "verdict": outcome.verdict or UNCHECKED,
+        "verdict": verdict,
         "reason": outcome.reason,
         "expected": claim.expected,
-        "as_expected": outcome.verdict == claim.expected,
+        "as_expected": None,
         "erratum": claim.erratum,
         "note": claim.note,
         "silent": claim.silent,
         "figure": claim.figure,
-        "command": f"undula reproduce {name}{' --quick' if quick else ''}",
-        "steps": [jobs[places[local]].told for local in asked],
+        "command": f"undula reproduce {name}",
+        "steps": [],
     }
 
 
@@ -79,13 +132,15 @@ def rows_text(rows: Sequence[Mapping[str, Any]], page: Path) -> str:
     """Return the rows for a terminal."""
     lines = []
     for row in rows:
-        mark = "" if row["as_expected"] else f"  << known to be {row['expected']}"
+        mark = "" if row["as_expected"] is not False else f"  << known to be {row['expected']}"
         lines.append(f"{row['item']}/{row['claim']}: {row['verdict']}{mark}")
         unit = f" {row['unit']}" if row["unit"] else ""
         ours = number_text(row["value"], row["error"])
-        lines.append(f"    paper {number_text(row['published'])}{unit}, here {ours}{unit}")
+        here = "" if row["verdict"] == NOT_JUDGED else f", here {ours}{unit}"
+        lines.append(f"    paper {number_text(row['published'])}{unit}{here}")
         if row["reason"]:
-            lines.append(f"    {row['reason']}")
+            cure = f"; {row['command']}" if row["verdict"] == NOT_JUDGED else ""
+            lines.append(f"    {row['reason']}{cure}")
     counted = ", ".join(f"{count} {verdict}" for verdict, count in tally(rows).items())
     return "\n".join([*lines, f"{len(rows)} claims: {counted or 'none'}", f"report: {page}"])
 

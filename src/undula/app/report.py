@@ -1,7 +1,7 @@
 """The report: one page with every claim, figure and command, that opens without a network."""
 
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ def write_report(
     rows: Mapping[str, Sequence[Mapping[str, Any]]],
     jobs: Mapping[str, Job],
     *,
+    wanted: Collection[str],
     quick: bool,
     vector: bool,
 ) -> Path:
@@ -40,8 +41,8 @@ def write_report(
             "name": name,
             "item": item,
             "rows": rows[name],
-            "figures": figures_of(name, item, jobs),
-            "movies": movies_of(out, name, item, jobs),
+            "figures": figures_of(name, item, jobs, quick=quick),
+            "movies": movies_of(out, name, item, jobs, quick=quick),
             "pages": packed_pages(item, answers_of(item, name, jobs)),
             "commands": _commands(name, item, jobs),
         }
@@ -50,7 +51,7 @@ def write_report(
     if vector:
         for name, item in items.items():
             write_vectors(out / "figures", name, item, jobs)
-    shown = [section for section in sections if _has_content(section)]
+    shown = [one for one in sections if one["name"] in wanted or _has_content(one)]
     claims = [row for name in items for row in rows[name]]
     environment = Environment(
         loader=PackageLoader("undula.app", "."),
@@ -65,8 +66,9 @@ def write_report(
         sections=shown,
         library=packed_library() if any(section["pages"] for section in shown) else "",
         claims=claims,
-        verdicts={verdict: tally(claims).get(verdict, 0) for verdict in _VERDICTS},
-        unexpected=[row for row in claims if not row["as_expected"]],
+        verdicts={verdict: tally(claims).get(verdict, 0) for verdict in _VERDICTS}
+        | {verdict: count for verdict, count in tally(claims).items() if verdict not in _VERDICTS},
+        unexpected=[row for row in claims if row["as_expected"] is False],
         quick=quick,
         versions={name: version(name) for name in ("undula", "numpy", "scipy", "numba")},
         python=platform.python_version(),
@@ -77,7 +79,8 @@ def write_report(
 
 
 def _has_content(section: Mapping[str, Any]) -> bool:
-    return bool(section["rows"] or section["figures"] or section["movies"])
+    drawn = [one for one in (*section["figures"], *section["movies"]) if one.source]
+    return bool(section["rows"] or drawn)
 
 
 def _commands(name: str, item: Item, jobs: Mapping[str, Job]) -> list[tuple[str, float]]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from undula.app.answers import DONE
 from undula.app.catalogue_tasks import Job, answers_of, carry_out
+from undula.app.claim_rows import left_out
 from undula.app.drawing import figure_bytes
 from undula.errors import InputError
 from undula.studies.claims import Answer
@@ -37,17 +38,21 @@ class Shown:
     name, shows, caption
         As in the catalogue.
     source
-        The picture itself as a data URI, or the name of a file beside the page.
+        The picture itself as a data URI, or the name of a file beside the page; empty if it is left
+        out.
+    left_out
+        Why it is left out, if it is.
     """
 
     name: str
     shows: str
     caption: str
     source: str
+    left_out: str = ""
 
 
-def figures_of(name: str, item: Item, jobs: Mapping[str, Job]) -> list[Shown]:
-    """Return the figures of an item whose tasks are done.
+def figures_of(name: str, item: Item, jobs: Mapping[str, Job], *, quick: bool) -> list[Shown]:
+    """Return the figures of an item, those whose tasks are not done with the reason.
 
     Raises
     ------
@@ -56,21 +61,29 @@ def figures_of(name: str, item: Item, jobs: Mapping[str, Job]) -> list[Shown]:
     """
     answers = answers_of(item, name, jobs)
     shown = []
-    for figure in _ready(item, answers):
+    for figure in item.figures:
+        why = left_out(sorted(figure.asks), answers, quick=quick)
+        if why:
+            shown.append(Shown(figure.name, figure.shows, figure.caption, "", why))
+            continue
         suffix, content = _content(figure, answers, jobs)
         source = f"data:{_KINDS[suffix]};base64,{base64.b64encode(content).decode()}"
         shown.append(Shown(figure.name, figure.shows, figure.caption, source))
     return shown
 
 
-def movies_of(out: Path, name: str, item: Item, jobs: Mapping[str, Job]) -> list[Shown]:
-    """Copy the movies of an item beside the page; return them."""
+def movies_of(
+    out: Path, name: str, item: Item, jobs: Mapping[str, Job], *, quick: bool
+) -> list[Shown]:
+    """Copy the movies of an item beside the page; return them, or why they are not there."""
     answers = answers_of(item, name, jobs)
     shown = []
     for movie in item.movies:
-        if not movie.asks <= answers.keys():
-            continue
         place = out / "movies" / f"{name}-{next(iter(movie.asks))}.mp4"
+        why = left_out(sorted(movie.asks), answers, quick=quick)
+        if why:
+            shown.append(Shown(place.stem, movie.shows, movie.caption, "", why))
+            continue
         place.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(_path(movie.file, answers), place)
         relative = place.relative_to(out).as_posix()

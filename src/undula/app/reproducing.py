@@ -100,8 +100,19 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
     jobs = jobs_of(items, asked.catalogue / "inputs", asked.out / "data", quick=asked.quick)
     left = [job for job in _needed(wanted, jobs) if asked.fresh or job.kept() is None]
     status = _carry_on(left, asked)
-    rows = {name: _rows(name, item, jobs, asked) for name, item in items.items()}
-    page = write_report(asked.out, paper, items, rows, jobs, quick=asked.quick, vector=asked.vector)
+    rows = {
+        name: _rows(name, item, jobs, asked, wanted=name in wanted) for name, item in items.items()
+    }
+    page = write_report(
+        asked.out,
+        paper,
+        items,
+        rows,
+        jobs,
+        wanted=wanted.keys(),
+        quick=asked.quick,
+        vector=asked.vector,
+    )
     claims = [row for name in items for row in rows[name]]
     content = json.dumps(finite({"quick": asked.quick, "claims": claims}), indent=1)
     write_whole(asked.out / "claims.json", content.encode(), overwrite=True)
@@ -117,7 +128,7 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
     if status != "done":
         notice(f"the reproduction was {status}; the same command goes on from there")
         return STOPPED_EARLY
-    return DONE if all(row["as_expected"] for row in told) else DIFFERS
+    return DIFFERS if any(row["as_expected"] is False for row in told) else DONE
 
 
 def _needed(wanted: Mapping[str, Item], jobs: Mapping[str, Job]) -> list[Job]:
@@ -135,10 +146,15 @@ def _needed(wanted: Mapping[str, Item], jobs: Mapping[str, Job]) -> list[Job]:
     return found
 
 
-def _rows(name: str, item: Item, jobs: Mapping[str, Job], asked: Asked) -> list[dict[str, Any]]:
+def _rows(
+    name: str, item: Item, jobs: Mapping[str, Job], asked: Asked, *, wanted: bool
+) -> list[dict[str, Any]]:
     """Return the rows of an item's claims, without those that have not been asked for yet."""
     answers = answers_of(item, name, jobs)
-    rows = [row_of(name, item, claim, answers, jobs, quick=asked.quick) for claim in item.claims]
+    rows = [
+        row_of(name, item, claim, answers, jobs, quick=asked.quick, wanted=wanted)
+        for claim in item.claims
+    ]
     return [row for row in rows if row is not None]
 
 

@@ -8,6 +8,7 @@ paper, and the folder `inputs` with input files of commands, such as studies of 
 import ast
 import re
 import tomllib
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Literal, TypeVar
 
@@ -15,6 +16,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from undula.errors import InputError
 from undula.studies.complaints import nearest
+from undula.studies.stated import other_values, values_of_call
 from undula.studies.strict_table import Table, conflict
 
 #: The catalogue of this package.
@@ -88,6 +90,9 @@ class Claim(Table):
     note: str = Field("", description="what is to be said of the outcome")
     expected: Verdict = Field("confirmed", description="the verdict that is known to hold")
     figure: str | None = Field(None, description="the name of a figure that shows it")
+    at: dict[str, Value | list[Value]] = Field(
+        {}, description="keys of the input with the value, or the values, that it is about"
+    )
     only_full: bool = Field(False, description="true if coarser grids do not show it")
     erratum: bool = Field(False, description="true for a slip of the paper")
 
@@ -107,8 +112,12 @@ class Claim(Table):
     @property
     def asks(self) -> frozenset[str]:
         """Names that occur in its expressions."""
-        nodes = (node for text in self.expressions for node in ast.walk(ast.parse(text.strip())))
-        return frozenset(node.id for node in nodes if isinstance(node, ast.Name))
+        return _names(self.expressions)
+
+    @property
+    def judged_by(self) -> frozenset[str]:
+        """Names that occur in what it is judged by: all its expressions but that of the error."""
+        return _names(text for text in (self.value, self.agrees_with) if text)
 
 
 class Figure(Table):
@@ -199,6 +208,7 @@ def catalogue(folder: Path = CATALOGUE) -> dict[str, Item]:
     ordered = dict(sorted(items.items(), key=lambda entry: entry[1].order))
     for name, item in ordered.items():
         _check(name, item, ordered)
+        _check_values(folder, name, item, ordered)
     return ordered
 
 
@@ -229,6 +239,32 @@ def _read(path: Path, record: type[Read]) -> Read:
         ) from error
     except (OSError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{path.name} cannot be read as TOML ({error}); mend the file") from error
+
+
+def _names(expressions: Iterable[str]) -> frozenset[str]:
+    nodes = (node for text in expressions for node in ast.walk(ast.parse(text.strip())))
+    return frozenset(node.id for node in nodes if isinstance(node, ast.Name))
+
+
+def task_of(name: str, item: Item, items: Mapping[str, Item], local: str) -> Task:
+    """Return a task by the name that an item uses, its own or that of another."""
+    owner, _, task = item.uses.get(local, f"{name}/{local}").partition("/")
+    return items[owner].tasks[task]
+
+
+def _check_values(folder: Path, name: str, item: Item, items: Mapping[str, Item]) -> None:
+    """Refuse claims that the whole report would compute at other values than their own."""
+    known = {*item.tasks, *item.uses}
+    for claim in item.claims:
+        computed = {
+            local: values_of_call(task_of(name, item, items, local).call, folder / "inputs")
+            for local in (claim.judged_by & known if claim.at else ())
+        }
+        trouble = other_values(claim.at, computed)
+        if trouble:
+            raise InputError(
+                f"{name}.toml: claim {claim.name}: {trouble}; mend the one or the other"
+            )
 
 
 def _check(name: str, item: Item, items: dict[str, Item]) -> None:

@@ -15,6 +15,7 @@ from undula.arrays import Points
 __all__ = [
     "at",
     "crossing",
+    "exactly",
     "falling",
     "first_present",
     "forces",
@@ -50,6 +51,20 @@ def at(where: float, of: ArrayLike, values: ArrayLike) -> float:
     middle = int(np.clip(np.searchsorted(places, where), 1, len(places) - 2))
     near = slice(middle - 1, middle + 2)
     return float(_parabola(places[near] - where, known[near])[0])
+
+
+def exactly(where: float, of: ArrayLike, values: ArrayLike) -> float:
+    """Return what was computed at a place itself.
+
+    Raises
+    ------
+    ValueError
+        Nothing was.
+    """
+    found = np.flatnonzero(np.asarray(of, dtype=float) == where)
+    if not len(found):
+        raise ValueError(f"nothing was computed at {where:g}")
+    return float(np.asarray(values, dtype=float)[found[0]])
 
 
 def on(where: ArrayLike, of: ArrayLike, values: ArrayLike) -> Points:
