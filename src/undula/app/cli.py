@@ -4,11 +4,11 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 
+from undula.app.help import Commands
 from undula.app.options import (
     Budget,
     Changes,
@@ -28,20 +28,9 @@ from undula.errors import InputError
 # Matrices here are small: a second thread of the linear algebra makes them slower, not faster.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-
-class _Commands(TyperGroup):
-    """Commands that are listed with their whole first sentence; Click would cut it short."""
-
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        command = super().get_command(ctx, cmd_name)
-        if command is not None:
-            command.short_help = (command.help or "").partition("\n\n")[0]
-        return command
-
-
 app = typer.Typer(
     name="undula",
-    cls=_Commands,
+    cls=Commands,
     add_completion=False,
     pretty_exceptions_enable=False,
     # As mark-up, words in square brackets would be commands to rich and not come out.

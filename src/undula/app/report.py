@@ -74,7 +74,8 @@ def write_report(
         python=platform.python_version(),
     )
     path = out / "index.html"
-    write_whole(path, page.encode(), overwrite=True)
+    # Names of files need not be Unicode.
+    write_whole(path, page.encode("utf-8", "replace"), overwrite=True)
     return path
 
 
