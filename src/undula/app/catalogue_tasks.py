@@ -28,6 +28,7 @@ _JUDGING = (
     "studies/claims",
     "studies/measures",
     "studies/slips",
+    "studies/stated",
     "studies/study_measures",
     "views/reproduced",
 )
