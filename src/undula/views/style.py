@@ -52,7 +52,7 @@ _PARAMETER_LABELS = {
 }
 _PALE, _DARK = 0.08, 0.97
 # Points: a title, and one that is long.
-_TITLE, _SMALLEST = 11.5, 8.0
+_TITLE, _SMALLEST = 11.5, 7.0
 _SETTINGS = {
     "font.family": ["DejaVu Sans"],
     "font.size": 9.0,
