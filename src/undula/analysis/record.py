@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from undula.analysis.formats import RUN_FORMAT
 from undula.analysis.motion import Motion
 from undula.analysis.run import Run
 from undula.models.units import FILAMENT_UNITS, Units
@@ -61,6 +62,7 @@ def dataset_of(
             "verdict": run.verdict.name,
             "health": json.dumps(asdict(run.health)),
             "summary": json.dumps(summary),
+            "undula_format": RUN_FORMAT,
         },
     )
 

@@ -71,8 +71,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _carry_out(given: Sequence[str]) -> int:
     """Run a command; tell a mistake in one sentence, and return the exit status."""
+    from undula.app.doubts import doubts_told
+
     try:
-        return int(app(given, prog_name="undula", standalone_mode=False) or 0)
+        with doubts_told():
+            return int(app(given, prog_name="undula", standalone_mode=False) or 0)
     except KeyboardInterrupt:
         return 130
     except Exception as error:

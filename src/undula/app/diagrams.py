@@ -26,7 +26,6 @@ from undula.views import basin_diagram, gallery, mean_paths, phase_diagram, phas
 #: What of a study can be drawn.
 VIEWS = ("diagram", "gallery", "paths", "basins")
 _PAGE = ".html"
-_SHAPES = ("shapes", "shape_times", "path")
 
 
 @dataclass(frozen=True)
@@ -81,11 +80,7 @@ def _figure_path(path: Path, asked: Asked) -> Path:
 def _part(path: Path, asked: Asked, *, with_shapes: bool) -> xr.Dataset:
     """Return what was chosen of a study, in memory."""
     at = dict(_chosen_value(text) for text in asked.at)
-    stored = load_study(path)
-    if not with_shapes:
-        # They are nearly all of a store, and of no use here.
-        stored = stored.drop_vars(_SHAPES, errors="ignore")
-    store = chosen(stored, at).load()
+    store = chosen(load_study(path, shapes=with_shapes), at).load()
     if len(varied(store)) > 2:
         several = ", ".join(varied(store))
         raise InputError(

@@ -64,10 +64,10 @@ def take_up(result: Path, until: float | None) -> Job:
     InputError
         The file cannot be read or resumed, or there is nothing left to do.
     """
-    stored = load_result(result)
+    # What is missing in a file that other software has stored is told by its checkpoint first.
+    saved, stored = load_checkpoint(result), load_result(result)
     wanted = _stored_input(result, stored)
     _refuse_what_cannot_go_on(result, stored, until)
-    saved = load_checkpoint(result)
     if until is not None:
         wanted = _until(wanted, until, float(saved["interval"]))
     simulation = Simulation.resume(build_model(wanted), build_schedule(wanted), saved)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.sweep_points import FAILED, NOT_DONE
+from undula.studies.doubts import warn_damaged
 from undula.studies.point import PIECE_SECONDS
 from undula.studies.study_store import Arrays, StudyStore
 
@@ -54,6 +55,8 @@ class SweepWork:
     def __init__(self, store: StudyStore, *, retry_failed: bool = False) -> None:
         self._store, self._study = store, store.study
         self._whole_lines = store.study.whole_lines
+        if damaged := store.mend():
+            warn_damaged(store.path, damaged)
         self._statuses = store.statuses()
         if retry_failed:
             store.forget(np.flatnonzero(self._statuses == FAILED).tolist())

@@ -93,7 +93,7 @@ def sweep(
     with store.alone():
         work = SweepWork(store, retry_failed=asked.retry_failed)
         status = _carry_on(work, store.study, asked, began) if work.left else "done"
-    answer = study_answer(load_study(store.path))
+    answer = study_answer(load_study(store.path, shapes=False))
     answer |= {"status": status, "seconds": time.monotonic() - began, "store": str(store.path)}
     _tell_of_trouble(answer, store)
     reply(answer, study_text(answer), as_json=as_json)
@@ -108,7 +108,7 @@ def status(path: Path, *, as_json: bool) -> int:
     InputError
         There is no such store.
     """
-    answer = study_answer(load_study(path)) | {"store": str(path)}
+    answer = study_answer(load_study(path, shapes=False)) | {"store": str(path)}
     reply(answer, study_text(answer), as_json=as_json)
     return DONE
 

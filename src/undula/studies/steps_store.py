@@ -150,6 +150,7 @@ def _attributes(series: Series) -> dict[str, str]:
         "parameter": series.course.parameter,
         "load": series.wanted.tell({series.course.parameter}),
         "units": json.dumps(series.model.units.names()),
+        "undula_format": STEPS.format,
     }
 
 

@@ -3,7 +3,8 @@
 The root group holds the trajectory, as any NetCDF reader shows it; the group ``checkpoint``
 holds the arrays that continue the run, bit for bit. A file appears whole or not at all, and
 the same content always gives the same bytes. Other kinds of results are files of a root group
-alone.
+alone. A checksum behind all is held against the bytes before HDF5 sees them; the checkpoint carries
+another, since it holds good also in a file that was annotated by other software.
 """
 
 from collections.abc import Mapping
@@ -17,7 +18,11 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from undula.analysis.formats import RUN_FORMAT
 from undula.errors import InputError
+from undula.studies.digests import digest_of_arrays
+from undula.studies.doubts import warn_unchecked
+from undula.studies.seal import Condition, condition, sealed
 from undula.studies.whole_file import write_whole
 
 
@@ -37,13 +42,16 @@ class Kind:
     command: str
 
 
-RUN = Kind("run 1", "undula run")
+RUN = Kind(RUN_FORMAT, "undula run")
 
 _ENGINE: Any = "h5netcdf"
 _CHECKPOINT = "checkpoint"
 # NetCDF hands the dimensions of the root down to the group: an array called "time" there would
 # pass for the coordinate of the dimension "time".
 _SAVED = "saved_"
+_DIGEST = "sha256"
+#: What a checkpoint goes on with besides its arrays: attributes of the root.
+_GOES_ON_WITH = ("input", "versions", "summary")
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -130,8 +138,15 @@ def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
     InputError
         The file is missing, unreadable, cut short, or not a result file of undula.
     """
-    arrays = _read(path, RUN, _CHECKPOINT)
-    return {str(name).removeprefix(_SAVED): array.values for name, array in arrays.items()}
+    stored, root = _read(path, RUN, _CHECKPOINT), _read(path, RUN)
+    arrays = {str(name).removeprefix(_SAVED): array.values for name, array in stored.items()}
+    # Files of earlier versions have none.
+    if stored.attrs.get(_DIGEST, _digest(arrays, root)) != _digest(arrays, root):
+        raise InputError(
+            f"the checkpoint of {path} is not as undula run wrote it, or is not of this input;"
+            " run it again, or resume a copy that is whole"
+        )
+    return arrays
 
 
 def _image(
@@ -141,13 +156,21 @@ def _image(
     image = BytesIO()
     _append(image, dataset.assign_attrs(undula_format=kind.format), group=None)
     if checkpoint is not None:
-        named = {f"{_SAVED}{name}": _as_variable(name, kept) for name, kept in checkpoint.items()}
-        _append(image, xr.Dataset(named), group=_CHECKPOINT)
-    return image.getvalue()
+        arrays = {name: np.asarray(kept) for name, kept in checkpoint.items()}
+        named = {f"{_SAVED}{name}": _as_variable(name, kept) for name, kept in arrays.items()}
+        attributes = {_DIGEST: _digest(arrays, dataset)}
+        _append(image, xr.Dataset(named, attrs=attributes), group=_CHECKPOINT)
+    return sealed(image.getvalue())
 
 
-def _as_variable(name: str, array: npt.NDArray[Any]) -> xr.Variable:
-    values = np.asarray(array)
+def _digest(arrays: Mapping[str, npt.NDArray[Any]], root: xr.Dataset) -> str:
+    """Return the digest of a checkpoint and of what it goes on with."""
+    return digest_of_arrays(
+        arrays, {name: str(root.attrs[name]) for name in _GOES_ON_WITH if name in root.attrs}
+    )
+
+
+def _as_variable(name: str, values: npt.NDArray[Any]) -> xr.Variable:
     if values.dtype not in (np.float64, np.int64, np.bool_):
         raise TypeError(
             f"checkpoint array {name} has type {values.dtype}, not float64, int64, bool"
@@ -174,17 +197,34 @@ def _encoding(variable: xr.Variable) -> dict[str, Any]:
 
 def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
     content = _read_bytes(path, kind)
+    found = condition(content)
+    if found is Condition.DAMAGED:
+        raise _damaged(path, kind)
     try:
-        # Only h5py fails quietly on files that are cut short, so it has the first look.
         with h5py.File(BytesIO(content), "r") as root:
             _check_format(path, kind, root.attrs)
+            if group is not None and group not in root:
+                raise InputError(
+                    f"{path} holds no {group}, since other software has stored it; give the file"
+                    f" that {kind.command} wrote"
+                )
         with _opened(content, group) as stored:
-            return stored.load().drop_encoding()
+            dataset = _without_fill(stored.load().drop_encoding())
     except InputError:
         raise
     except Exception as error:
         # The HDF5 stack has no common exception for broken files: nearly any may come.
         raise _damaged(path, kind) from error
+    if found is Condition.UNCHECKED and group is None:
+        warn_unchecked(path)
+    return dataset
+
+
+def _without_fill(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset without the fill values that xarray adds, and would not store again."""
+    for variable in dataset.variables.values():
+        variable.attrs.pop("_FillValue", None)
+    return dataset
 
 
 def _opened(content: bytes, group: str | None) -> xr.Dataset:

@@ -10,16 +10,19 @@ from typing import Any, Literal
 
 import numpy as np
 import zarr
+from zarr.registry import get_numcodec
 
 from undula.analysis.last_period import INSTANTS, SHAPES
 from undula.analysis.sweep_points import TRY
 from undula.models.model import Model
 from undula.studies.blocks import chunk_shape
 from undula.studies.build import build_model
+from undula.studies.chunks import CHECKSUM
 from undula.studies.point import software
 from undula.studies.spec import parse_input
 from undula.studies.study import Study
 from undula.studies.study_columns import INNER, SEED, STATUS, STATUS_WORDS, Column, columns_of
+from undula.studies.study_metadata import seal_of, single_files
 
 #: What a store is, and the number of its format.
 FORMAT = "study 1"
@@ -51,10 +54,20 @@ def _fill(path: Path, study: Study) -> None:
     wanted = parse_input(study.tables(0))
     model = build_model(wanted)
     group = zarr.create_group(path, zarr_format=ZARR_FORMAT, attributes=_attributes(study))
-    for name, values in _coordinates(study).items():
-        _add(group, name, values.dtype.str, (name,), values.shape, values.shape)[...] = values
     _add_variables(group, study, model)
+    seeds = {"dims": _dims(study), "attributes": _told(SEED, model.units.names())}
+    for name, values in known_arrays(study).items():
+        told = seeds if name == SEED.name else {"dims": (name,)}
+        # Known from the beginning and never written again.
+        _add(group, name, values.dtype.str, values.shape, values.shape, **told)[...] = values
+    group.attrs.update(seal_of(single_files(path)))
     zarr.consolidate_metadata(path, zarr_format=ZARR_FORMAT)
+
+
+def known_arrays(study: Study) -> dict[str, np.ndarray[Any, Any]]:
+    """Return the arrays that follow from the study: its axes, and the seeds."""
+    seeds = np.array([study.seed(number) for number in range(study.count)], dtype=SEED.dtype)
+    return {**_coordinates(study), SEED.name: seeds.reshape(study.shape)}
 
 
 def _attributes(study: Study) -> dict[str, str]:
@@ -79,7 +92,7 @@ def _coordinates(study: Study) -> dict[str, np.ndarray[Any, Any]]:
 
 
 def _add_variables(group: zarr.Group, study: Study, model: Model) -> None:
-    dims = (*(axis.key for axis in study.axes), TRY)
+    dims = _dims(study)
     lengths = {"shape": SHAPES, "instant": INSTANTS, "node": model.links + 1, "axis": 3}
     columns = columns_of(study.label, study.keep, study.undecided)
     largest = 8
@@ -90,20 +103,19 @@ def _add_variables(group: zarr.Group, study: Study, model: Model) -> None:
     for column in columns:
         further = INNER.get(column.name, ())
         inner = tuple(lengths[name] for name in further)
-        attributes = _told(column, units)
         _add(
             group,
             column.name,
             column.dtype,
-            (*dims, *further),
             (*study.shape, *inner),
             (*chunks, *inner),
-            attributes,
+            dims=(*dims, *further),
+            attributes=_told(column, units),
         )
-    seeds = np.array([study.seed(number) for number in range(study.count)], dtype=SEED.dtype)
-    # Known from the beginning and never written again.
-    array = _add(group, SEED.name, SEED.dtype, dims, study.shape, study.shape, _told(SEED, units))
-    array[...] = seeds.reshape(study.shape)
+
+
+def _dims(study: Study) -> tuple[str, ...]:
+    return (*(axis.key for axis in study.axes), TRY)
 
 
 def _told(column: Column, units: dict[str, str]) -> dict[str, Any]:
@@ -123,9 +135,10 @@ def _add(
     group: zarr.Group,
     name: str,
     dtype: str,
-    dims: tuple[str, ...],
     shape: tuple[int, ...],
     chunks: tuple[int, ...],
+    *,
+    dims: tuple[str, ...],
     attributes: dict[str, Any] | None = None,
 ) -> Any:
     return group.create_array(
@@ -133,6 +146,12 @@ def _add(
         shape=shape,
         chunks=chunks,
         dtype=dtype,
+        # As filters, for the checksum to be of the compressed bytes: none of them is looked at
+        # before it is known to be whole.
+        filters=[get_numcodec({"id": "blosc"}), get_numcodec({"id": CHECKSUM})],
+        compressors=None,
+        # What is missing is damage.
+        config={"write_empty_chunks": True},
         # Of numbers and texts without one, 0 and the empty text are read where nothing is written.
         fill_value=np.nan if dtype == "float64" else None,
         attributes={"_ARRAY_DIMENSIONS": list(dims), **(attributes or {})},

@@ -2,7 +2,8 @@
 
 A block is one chunk of every variable, so that writing it touches files of its own only. The file
 with the status of its points is written last, and each file takes its place in one step: a point
-that is said to be done, is, whenever the writing was cut short.
+that is said to be done, is, whenever the writing was cut short. Every file carries a checksum, and
+points of which one is damaged or missing are done again.
 """
 
 import fcntl
@@ -16,13 +17,19 @@ import numpy as np
 import xarray as xr
 import zarr
 
+from undula.analysis.sweep_points import DONE
 from undula.errors import InputError
 from undula.studies.blocks import Blocks
+from undula.studies.chunks import Chunks
 from undula.studies.differences import difference
 from undula.studies.point import software
+from undula.studies.seal import is_whole
+from undula.studies.sound_store import SoundStore
+from undula.studies.sound_study import sound_dataset
 from undula.studies.study import Study
 from undula.studies.study_columns import STATUS, columns_of
-from undula.studies.study_layout import FORMAT, RUNS, ZARR_FORMAT, lay_out
+from undula.studies.study_layout import FORMAT, RUNS, ZARR_FORMAT, known_arrays, lay_out
+from undula.studies.study_metadata import Metadata, mend_metadata, read_metadata
 from undula.studies.whole_file import folder_trouble_told, write_whole
 
 Record = Mapping[str, Any]
@@ -41,10 +48,15 @@ class StudyStore:
     """
 
     def __init__(self, path: Path, study: Study) -> None:
-        group = zarr.open_group(path, mode="r+", zarr_format=ZARR_FORMAT)
-        self.path, self.study = path, study
+        self.path, self.study, self._metadata = path, study, read_metadata(path)
+        store = SoundStore.of(path, self._metadata.files, read_only=False)
         self._columns = columns_of(study.label, study.keep, study.undecided)
-        self._arrays: dict[str, Any] = {one.name: group[one.name] for one in self._columns}
+        # A chunk is written even if all in it is empty: what is missing is damage.
+        with zarr.config.set({"array.write_empty_chunks": True}):
+            self._group: Any = zarr.open_group(store, mode="r+", zarr_format=ZARR_FORMAT)
+            self._arrays: dict[str, Any] = {
+                one.name: self._group[one.name] for one in self._columns
+            }
         self.blocks = Blocks(study.shape, self._arrays[STATUS.name].chunks)
 
     def statuses(self) -> np.ndarray[Any, Any]:
@@ -95,6 +107,30 @@ class StudyStore:
                 with folder_trouble_told(self.path):
                     self._arrays[STATUS.name][region] = status
 
+    def mend(self) -> int:
+        """Mark points as not done of which something is damaged; return how many there were.
+
+        What follows from the study is written anew.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be written or is full.
+        """
+        mend_metadata(self.path, self._metadata)
+        chunks = Chunks.of(self.path, self._metadata)
+        lost = chunks.without_status()
+        self._remove(chunks, [(STATUS.name, block) for block in lost])
+        statuses = self.statuses()
+        broken = list(chunks.damaged(statuses, chunks.names))
+        numbers = [one for at in broken for one in self.blocks.numbers(at) if statuses[one]]
+        numbers += [one for one in self._without_run(statuses) if one not in set(numbers)]
+        # Its status comes first: no point may seem done of which something is being replaced.
+        self.forget(numbers)
+        self._remove(chunks, [(name, block) for name in chunks.names for block in (*broken, *lost)])
+        self._mend_known(chunks)
+        return len(numbers) + sum(len(self.blocks.numbers(block)) for block in lost)
+
     def put(self, arrays: Arrays, local: Sequence[int], records: Iterable[Record]) -> None:
         """Enter records of points into the arrays of their block, at their places in it."""
         records = list(records)
@@ -103,6 +139,31 @@ class StudyStore:
             flat = arrays[column.name].reshape(-1, *arrays[column.name].shape[dims:])
             for at, record in zip(local, records, strict=True):
                 flat[at] = record.get(column.name, column.rest)
+
+    def _without_run(self, statuses: np.ndarray[Any, Any]) -> Iterator[int]:
+        """Yield the points that are done and whose run is to be kept, but is not whole."""
+        if self.study.keep == "run":
+            for number in np.flatnonzero(statuses == DONE).tolist():
+                path = self.path / RUNS / run_name(self.study, number)
+                try:
+                    whole = is_whole(path.read_bytes())
+                except OSError:
+                    whole = False
+                if not whole:
+                    yield number
+
+    def _mend_known(self, chunks: Chunks) -> None:
+        if damaged := chunks.damaged_known():
+            made = known_arrays(self.study)
+            self._remove(chunks, [(name, 0) for name in damaged])
+            with folder_trouble_told(self.path):
+                for name in damaged:
+                    self._group[name][...] = made[name]
+
+    def _remove(self, chunks: Chunks, places: Sequence[tuple[str, int]]) -> None:
+        with folder_trouble_told(self.path):
+            for name, block in places:
+                (self.path / chunks.key(name, block)).unlink(missing_ok=True)
 
     def keep_run(self, number: int, image: bytes) -> None:
         """Store the result file of a point's run.
@@ -153,46 +214,57 @@ def open_study(path: Path, study: Study) -> StudyStore:
         with folder_trouble_told(path):
             lay_out(path, study)
         return StudyStore(path, study)
-    stored = load_study(path)
-    if stored.attrs["software"] != software():
+    metadata = _metadata_of(path)
+    told = metadata.attributes
+    if told["software"] != software():
         raise InputError(
-            f"{path} was made by undula {stored.attrs['software']} and cannot be gone on with by"
+            f"{path} was made by undula {told['software']} and cannot be gone on with by"
             f" undula {software()}; go on with that version, or give another --out"
         )
     # Both have to have been through JSON, for lists to be alike.
     wanted = json.loads(json.dumps(study.dump()))
-    differs = difference(json.loads(stored.attrs["study"]), wanted)
+    differs = difference(json.loads(told["study"]), wanted)
     if differs is not None:
         raise InputError(f"{path} holds another study, with {differs}; give another --out")
+    if not metadata.checked:
+        raise InputError(
+            f"{path} carries no checksums, since other software or an earlier version stored it,"
+            " and can be drawn but not gone on with; give another --out"
+        )
     return StudyStore(path, study)
 
 
-def load_study(path: Path | str) -> xr.Dataset:
+def load_study(path: Path | str, *, shapes: bool = True) -> xr.Dataset:
     """Open a stored study; its variables are read when they are asked for.
+
+    Points of which something is damaged are shown as not done, and a warning says how many.
 
     Parameters
     ----------
     path
         A store that ``undula sweep`` made, also while it is still at work on it.
+    shapes
+        Whether the shapes of last periods are among the variables. They are nearly all of a store,
+        and looking for damage in them takes as long as reading them.
 
     Raises
     ------
     InputError
-        There is no such store.
+        There is no such store, or what it says of itself is damaged.
     """
     path = Path(path)
+    return sound_dataset(path, _metadata_of(path), shapes=shapes)
+
+
+def _metadata_of(path: Path) -> Metadata:
+    """Return what a stored study says of itself."""
     if not path.exists():
         raise InputError(f"there is no study {path}; check the name")
-    try:
-        stored: xr.Dataset = xr.open_zarr(path, zarr_format=ZARR_FORMAT, chunks=None)
-    except (OSError, KeyError, ValueError):
-        raise InputError(
-            f"{path} is no stored study; give a folder that undula sweep made"
-        ) from None
-    found = stored.attrs.get("undula_format")
+    metadata = read_metadata(path)
+    found = metadata.attributes.get("undula_format")
     if found != FORMAT:
         raise InputError(
             f"{path} has the format {found!r}, not {FORMAT!r}; give a folder that this version of"
             " undula sweep made"
         )
-    return stored
+    return metadata

@@ -1,0 +1,114 @@
+"""A stored study as a dataset in which every number is as it was written.
+
+A block of points of which a chunk is damaged or missing is shown as not done. Only what is asked
+for is looked at: shapes are nearly all of a large store.
+"""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from undula.errors import InputError
+from undula.studies.chunks import Chunks
+from undula.studies.doubts import warn_damaged, warn_unchecked
+from undula.studies.sound_store import SoundStore
+from undula.studies.study import of_dump
+from undula.studies.study_columns import INNER, STATUS
+from undula.studies.study_layout import known_arrays
+from undula.studies.study_metadata import ARRAYS, DIGEST, Metadata
+
+
+def sound_dataset(path: Path, metadata: Metadata, *, shapes: bool) -> xr.Dataset:
+    """Return what is whole of a study, read when it is asked for.
+
+    A study that carries no checksums is read at once.
+
+    Parameters
+    ----------
+    path
+        Its folder.
+    metadata
+        As `read_metadata` gives them.
+    shapes
+        Whether the shapes of last periods are among the variables.
+
+    Raises
+    ------
+    InputError
+        A study without checksums cannot be read.
+    """
+    without = () if shapes else tuple(INNER)
+    stored = _sound(path, metadata, without) if metadata.checked else _read(path, metadata, without)
+    seal = (ARRAYS, DIGEST)
+    kept = {name: told for name, told in stored.attrs.items() if name not in seal}
+    # Encodings of this store would be in the way of storing it again.
+    return _with_attributes(stored.drop_encoding(), kept)
+
+
+def _sound(path: Path, metadata: Metadata, without: Iterable[str]) -> xr.Dataset:
+    chunks, store = Chunks.of(path, metadata), _store(path, metadata)
+    known, undone = chunks.damaged_known(), chunks.without_status()
+    store.hidden |= {chunks.key(name) for name in known}
+    store.hidden |= {chunks.key(STATUS.name, block) for block in undone}
+    stored = _opened(store, metadata).drop_vars(without, errors="ignore")
+    # A block's status is written last: what is looked at after it is there.
+    statuses = np.array(stored[STATUS.name].values)
+    names = [name for name in chunks.names if name in stored]
+    points = sum(len(chunks.blocks.numbers(block)) for block in undone)
+    for block in chunks.damaged(statuses.ravel(), names):
+        region = chunks.blocks.region(block)
+        points += int((statuses[region] != STATUS.rest).sum())
+        statuses[region] = STATUS.rest
+        undone.append(block)
+    store.hidden |= {chunks.key(name, block) for name in names for block in undone}
+    if points:
+        warn_damaged(path, points)
+    stored[STATUS.name] = stored[STATUS.name].copy(data=statuses)
+    return _replaced(stored, known)
+
+
+def _replaced(stored: xr.Dataset, known: list[str]) -> xr.Dataset:
+    """Return a study with those of its arrays made anew that follow from it."""
+    if known:
+        made = known_arrays(of_dump(json.loads(stored.attrs["study"])))
+        for name in known:
+            stored[name] = (stored[name].dims, made[name], stored[name].attrs)
+    return stored
+
+
+def _read(path: Path, metadata: Metadata, without: Iterable[str]) -> xr.Dataset:
+    try:
+        stored = _opened(_store(path, metadata), metadata)
+        stored = stored.drop_vars(without, errors="ignore").load()
+    except Exception as error:
+        # Codecs and Zarr have no common exception for what is broken: nearly any may come.
+        raise InputError(
+            f"{path} is damaged and carries no checksums to tell where; take it from a copy, or"
+            " make it again with undula sweep and another --out"
+        ) from error
+    warn_unchecked(path)
+    return stored
+
+
+def _store(path: Path, metadata: Metadata) -> SoundStore:
+    return SoundStore.of(path, metadata.files, read_only=True)
+
+
+def _opened(store: SoundStore, metadata: Metadata) -> xr.Dataset:
+    together = metadata.format == 2 or None
+    opened: xr.Dataset = xr.open_zarr(
+        store,
+        zarr_format=metadata.format,
+        chunks=None,
+        consolidated=together,
+    )
+    return opened
+
+
+def _with_attributes(stored: xr.Dataset, attributes: dict[str, Any]) -> xr.Dataset:
+    stored.attrs = attributes
+    return stored
