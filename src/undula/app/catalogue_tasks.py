@@ -17,6 +17,7 @@ from undula.app.answers import DONE
 from undula.compiled import PACKAGE
 from undula.errors import InputError
 from undula.studies.claims import Answer
+from undula.studies.digests import sealed_json, unsealed_json
 from undula.studies.items import Item, Task
 from undula.studies.whole_file import write_whole
 
@@ -71,12 +72,12 @@ class Job:
         return shlex.join(("undula", *self.command))
 
     def kept(self) -> dict[str, Any] | None:
-        """Return the record of an earlier call, if it is one of this very job."""
+        """Return the record of an earlier call, if it is one of this very job and undamaged."""
         try:
-            record = json.loads((self.folder / _ANSWER).read_text("utf-8"))
-        except (OSError, ValueError):
+            record = unsealed_json((self.folder / _ANSWER).read_bytes())
+        except OSError:
             return None
-        return record if record.get("key") == self.key else None
+        return record if record is not None and record["key"] == self.key else None
 
     def keep(self, record: Mapping[str, Any]) -> None:
         """Store the record of its answer.
@@ -86,13 +87,13 @@ class Job:
         InputError
             The folder cannot be written or is full.
         """
-        content = json.dumps({"key": self.key, **record}, indent=1, allow_nan=False)
-        write_whole(self.folder / _ANSWER, content.encode(), overwrite=True)
+        content = sealed_json({"key": self.key, **record})
+        write_whole(self.folder / _ANSWER, content, overwrite=True)
 
     def prepare(self) -> None:
         """Make its folder, without the files of another version of the same task."""
         mark = self.folder / "key"
-        if self.folder.exists() and (not mark.exists() or mark.read_text("utf-8") != self.key):
+        if self.folder.exists() and (not mark.exists() or mark.read_bytes() != self.key.encode()):
             shutil.rmtree(self.folder)
         write_whole(mark, self.key.encode(), overwrite=True)
 

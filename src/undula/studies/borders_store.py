@@ -1,7 +1,7 @@
 """Solved borders kept beside a stored study, to be used again as long as they are of the same one.
 
-They are one file of JSON, whole or not at all, that says what it is about. It is written anew with
-every column, so that what was solved for is never lost.
+They are one file of JSON, whole or not at all, that says what it is about and carries its digest.
+It is written anew with every column, so that what was solved for is never lost.
 """
 
 import json
@@ -18,6 +18,7 @@ from undula.analysis.borders import Borders, border_column
 from undula.analysis.stable_stretches import Change, Stretches
 from undula.analysis.sweep_points import axes_of
 from undula.studies.build import build_model
+from undula.studies.digests import sealed_json, unsealed_json
 from undula.studies.point import software
 from undula.studies.spec import parse_input
 from undula.studies.study import of_dump
@@ -57,13 +58,13 @@ def columns_of(jobs: Sequence[Mapping[str, Any]]) -> list[Column]:
 def kept_columns(path: Path, store: xr.Dataset) -> list[Column | None]:
     """Return the columns that are kept beside a study, None for those still to be solved for.
 
-    There are none at all if what is kept is of something else.
+    There are none at all if what is kept is of something else, or damaged.
     """
     try:
-        kept = json.loads((path / NAME).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        kept = unsealed_json((path / NAME).read_bytes())
+    except OSError:
         return []
-    if not isinstance(kept, dict) or kept.get("about") != _about(store):
+    if kept is None or kept["about"] != _about(store):
         return []
     return [column and _read(column) for column in kept["borders"]["columns"]]
 
@@ -81,8 +82,7 @@ def keep_borders(
         The folder cannot be written or is full.
     """
     content = {"about": _about(store), "borders": told(borders, columns)}
-    image = json.dumps(content, indent=1, allow_nan=False).encode()
-    write_whole(path / NAME, image, overwrite=True)
+    write_whole(path / NAME, sealed_json(content), overwrite=True)
 
 
 def told(borders: Borders, columns: Sequence[Column | None]) -> dict[str, Any]:

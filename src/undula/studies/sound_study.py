@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from undula.errors import InputError
 from undula.studies.chunks import Chunks
-from undula.studies.doubts import warn_damaged, warn_unchecked
+from undula.studies.doubts import warn_damaged
 from undula.studies.sound_store import SoundStore
 from undula.studies.study import of_dump
 from undula.studies.study_columns import INNER, STATUS
 from undula.studies.study_layout import known_arrays
 from undula.studies.study_metadata import ARRAYS, DIGEST, Metadata
+from undula.studies.zarr_copy import opened, read_copy
 
 
 def sound_dataset(path: Path, metadata: Metadata, *, shapes: bool) -> xr.Dataset:
@@ -42,7 +42,8 @@ def sound_dataset(path: Path, metadata: Metadata, *, shapes: bool) -> xr.Dataset
         A study without checksums cannot be read.
     """
     without = () if shapes else tuple(INNER)
-    stored = _sound(path, metadata, without) if metadata.checked else _read(path, metadata, without)
+    read = _sound if metadata.checked else read_copy
+    stored = read(path, metadata, without)
     seal = (ARRAYS, DIGEST)
     kept = {name: told for name, told in stored.attrs.items() if name not in seal}
     # Encodings of this store would be in the way of storing it again.
@@ -50,11 +51,12 @@ def sound_dataset(path: Path, metadata: Metadata, *, shapes: bool) -> xr.Dataset
 
 
 def _sound(path: Path, metadata: Metadata, without: Iterable[str]) -> xr.Dataset:
-    chunks, store = Chunks.of(path, metadata), _store(path, metadata)
+    chunks = Chunks.of(path, metadata)
+    store = SoundStore.of(path, metadata.files, read_only=True)
     known, undone = chunks.damaged_known(), chunks.without_status()
     store.hidden |= {chunks.key(name) for name in known}
     store.hidden |= {chunks.key(STATUS.name, block) for block in undone}
-    stored = _opened(store, metadata).drop_vars(without, errors="ignore")
+    stored = opened(store, metadata).drop_vars(without, errors="ignore")
     # A block's status is written last: what is looked at after it is there.
     statuses = np.array(stored[STATUS.name].values)
     names = [name for name in chunks.names if name in stored]
@@ -78,35 +80,6 @@ def _replaced(stored: xr.Dataset, known: list[str]) -> xr.Dataset:
         for name in known:
             stored[name] = (stored[name].dims, made[name], stored[name].attrs)
     return stored
-
-
-def _read(path: Path, metadata: Metadata, without: Iterable[str]) -> xr.Dataset:
-    try:
-        stored = _opened(_store(path, metadata), metadata)
-        stored = stored.drop_vars(without, errors="ignore").load()
-    except Exception as error:
-        # Codecs and Zarr have no common exception for what is broken: nearly any may come.
-        raise InputError(
-            f"{path} is damaged and carries no checksums to tell where; take it from a copy, or"
-            " make it again with undula sweep and another --out"
-        ) from error
-    warn_unchecked(path)
-    return stored
-
-
-def _store(path: Path, metadata: Metadata) -> SoundStore:
-    return SoundStore.of(path, metadata.files, read_only=True)
-
-
-def _opened(store: SoundStore, metadata: Metadata) -> xr.Dataset:
-    together = metadata.format == 2 or None
-    opened: xr.Dataset = xr.open_zarr(
-        store,
-        zarr_format=metadata.format,
-        chunks=None,
-        consolidated=together,
-    )
-    return opened
 
 
 def _with_attributes(stored: xr.Dataset, attributes: dict[str, Any]) -> xr.Dataset:

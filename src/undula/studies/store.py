@@ -196,6 +196,8 @@ def _encoding(variable: xr.Variable) -> dict[str, Any]:
 
 
 def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
+    if path.is_dir() and group is None:
+        return _read_folder(path, kind)
     content = _read_bytes(path, kind)
     found = condition(content)
     if found is Condition.DAMAGED:
@@ -218,6 +220,17 @@ def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
     if found is Condition.UNCHECKED and group is None:
         warn_unchecked(path)
     return dataset
+
+
+def _read_folder(path: Path, kind: Kind) -> xr.Dataset:
+    """Return a result that other software has stored again as Zarr."""
+    # Zarr is slow to be imported, and hardly any result needs it.
+    from undula.studies.study_metadata import read_metadata
+    from undula.studies.zarr_copy import read_copy
+
+    metadata = read_metadata(path)
+    _check_format(path, kind, metadata.attributes)
+    return _without_fill(read_copy(path, metadata).drop_encoding())
 
 
 def _without_fill(dataset: xr.Dataset) -> xr.Dataset:

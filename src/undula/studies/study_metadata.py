@@ -98,7 +98,7 @@ def read_metadata(path: Path) -> Metadata:
     copies = [copy for copy in (_together(path), single_files(path)) if _is_group(copy)]
     sealed = [copy for copy in copies if _is_sealed(copy)]
     if not copies:
-        raise InputError(f"{path} is no stored study; give a folder that undula sweep made")
+        raise _no_store(path)
     if not sealed and any(DIGEST in copy.get(_ATTRIBUTES, {}) for copy in copies):
         raise InputError(
             f"what {path} says of itself is damaged; take the files {_ALL} and {_ATTRIBUTES} from a"
@@ -139,8 +139,12 @@ def _third(path: Path) -> dict[str, Any]:
     files = [path / _THIRD, *sorted(path.glob(f"*/{_THIRD}"))]
     read = {file.relative_to(path).as_posix(): _json(file) for file in files}
     if read[_THIRD] is None:
-        raise InputError(f"{path} is no stored study; give a folder that undula sweep made")
+        raise _no_store(path)
     return {key: told for key, told in read.items() if told is not None}
+
+
+def _no_store(path: Path) -> InputError:
+    return InputError(f"{path} is no stored study or result; give a folder that undula sweep made")
 
 
 def _json(file: Path) -> dict[str, Any] | None:

@@ -26,6 +26,7 @@ from undula.studies.point import software
 from undula.studies.seal import is_whole
 from undula.studies.sound_store import SoundStore
 from undula.studies.sound_study import sound_dataset
+from undula.studies.store import Kind, read_result
 from undula.studies.study import Study
 from undula.studies.study_columns import STATUS, columns_of
 from undula.studies.study_layout import FORMAT, RUNS, ZARR_FORMAT, known_arrays, lay_out
@@ -253,6 +254,9 @@ def load_study(path: Path | str, *, shapes: bool = True) -> xr.Dataset:
         There is no such store, or what it says of itself is damaged.
     """
     path = Path(path)
+    if path.is_file():
+        # Other software may have stored it again in one file.
+        return read_result(path, Kind(FORMAT, "undula sweep"))
     return sound_dataset(path, _metadata_of(path), shapes=shapes)
 
 
