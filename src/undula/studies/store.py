@@ -23,6 +23,7 @@ from undula.errors import InputError
 from undula.studies.digests import digest_of_arrays
 from undula.studies.doubts import warn_unchecked
 from undula.studies.seal import Condition, condition, sealed
+from undula.studies.study_metadata import is_store, read_metadata
 from undula.studies.whole_file import write_whole
 
 
@@ -196,7 +197,7 @@ def _encoding(variable: xr.Variable) -> dict[str, Any]:
 
 
 def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
-    if path.is_dir() and group is None:
+    if group is None and is_store(path):
         return _read_folder(path, kind)
     content = _read_bytes(path, kind)
     found = condition(content)
@@ -225,7 +226,6 @@ def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
 def _read_folder(path: Path, kind: Kind) -> xr.Dataset:
     """Return a result that other software has stored again as Zarr."""
     # Zarr is slow to be imported, and hardly any result needs it.
-    from undula.studies.study_metadata import read_metadata
     from undula.studies.zarr_copy import read_copy
 
     metadata = read_metadata(path)

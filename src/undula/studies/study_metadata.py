@@ -79,6 +79,11 @@ def is_metadata(key: str) -> bool:
     return key.rsplit("/", 1)[-1] in _NAMES
 
 
+def is_store(path: Path) -> bool:
+    """Tell whether there is a store in a place, whatever it holds."""
+    return any((path / name).is_file() for name in (_GROUP, _ALL, _THIRD))
+
+
 def seal_of(content: Content) -> dict[str, Any]:
     """Return the attributes of the root that seal the metadata of a new store."""
     names = sorted(key.removesuffix(f"/{_ARRAY}") for key in content if key.endswith(_ARRAY))
