@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -49,8 +50,6 @@ def run(made: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def store(made: Path, tmp_path: Path) -> Path:
-    import shutil
-
     shutil.copytree(made / "s.zarr", tmp_path / "s.zarr")
     return tmp_path / "s.zarr"
 
@@ -183,7 +182,6 @@ def test_a_file_without_checksum_that_makes_hdf5_hang_is_ended(
     annotated_in_place(run)
     # A stand-in for the loops in HDF5: any reading that goes on for longer than it may.
     monkeypatch.setattr(trial_reading, "_SECONDS", 1)
-    monkeypatch.setenv("PYTHONSTARTUP", "")
     slow = run.with_name("slow")
     slow.mkdir()
     (slow / "h5py.py").write_text("while True: pass\n", encoding="utf-8")

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from undula.models.profiles import ProfileLoad, TableLoad
     from undula.models.scales import Scales
     from undula.models.starts import from_state, helix, kicked, mode, planar, straight
+    from undula.studies.doubts import StoredWarning
     from undula.studies.steps_store import load_steps
     from undula.studies.store import load_result
     from undula.studies.study_store import load_study
@@ -64,6 +65,7 @@ _HOMES = {
     "Run": "undula.analysis.run",
     "Scales": "undula.models.scales",
     "Spinning": "undula.analysis.states",
+    "StoredWarning": "undula.studies.doubts",
     "TableLoad": "undula.models.profiles",
     "TipLoad": "undula.models.loads",
     "basins": "undula.analysis.basins",
@@ -118,6 +120,7 @@ __all__ = [
     "Run",
     "Scales",
     "Spinning",
+    "StoredWarning",
     "TableLoad",
     "TipLoad",
     "basins",

@@ -21,6 +21,7 @@ from undula.studies.store import Kind, read_result, write_result
 STEPS = Kind("steps 1", "undula step")
 
 _LIBRARIES = ("undula", "numpy", "numba")
+_ATTRIBUTES = ("input", "options", "versions", "parameter")
 _BOUNDS = tuple(field.name for field in fields(Range))
 _SHAPED = {
     "nodes": ("step", "node", "axis"),
@@ -87,9 +88,17 @@ def load_steps(path: Path | str) -> xr.Dataset:
     Raises
     ------
     InputError
-        The file is missing, unreadable, cut short, or not written by ``undula step``.
+        The file is missing, unreadable, cut short, or not written by ``undula step``; or other
+        software has stored it without something that belongs to it.
     """
-    return read_result(Path(path), STEPS)
+    stored = read_result(Path(path), STEPS)
+    missing = [name for name in _variables() if name not in stored]
+    missing += [name for name in _ATTRIBUTES if name not in stored.attrs]
+    if missing:
+        raise InputError(
+            f"{path} lacks {', '.join(missing)}; give a file that has all that {STEPS.command} wrote"
+        )
+    return stored
 
 
 def dataset_of_steps(series: Series, steps: Sequence[Step]) -> xr.Dataset:
@@ -170,6 +179,13 @@ def _columns(field: Field[Any], steps: Sequence[Step]) -> Iterator[tuple[str, An
             yield f"{field.name}_{bound}", np.array([getattr(one, bound) for one in column])
     else:
         yield field.name, np.array(column)
+
+
+def _variables() -> Iterator[str]:
+    """Yield the names of all variables."""
+    for field in fields(Step):
+        bounds = _BOUNDS if field.type is Range else ()
+        yield from (f"{field.name}_{bound}" for bound in bounds) if bounds else (field.name,)
 
 
 def _read_column(field: Field[Any], stored: xr.Dataset) -> Sequence[Any]:

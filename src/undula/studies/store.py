@@ -7,6 +7,7 @@ alone. A checksum behind all is held against the bytes before HDF5 sees them; th
 another, since it holds good also in a file that was annotated by other software.
 """
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from io import BytesIO
@@ -53,6 +54,8 @@ _SAVED = "saved_"
 _DIGEST = "sha256"
 #: What a checkpoint goes on with besides its arrays: attributes of the root.
 _GOES_ON_WITH = ("input", "versions", "summary")
+#: Attributes of any kind that are JSON.
+_JSON = ("input", "versions", "summary", "health", "options", "units")
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -219,8 +222,21 @@ def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
         # The HDF5 stack has no common exception for broken files: nearly any may come.
         raise _damaged(path, kind) from error
     if found is Condition.UNCHECKED and group is None:
+        _refuse_broken_attributes(path, kind, dataset)
         warn_unchecked(path)
     return dataset
+
+
+def _refuse_broken_attributes(path: Path, kind: Kind, dataset: xr.Dataset) -> None:
+    """Refuse attributes that are no JSON any longer, of a file that other software has stored."""
+    for name in _JSON:
+        try:
+            json.loads(dataset.attrs.get(name, "{}"))
+        except (TypeError, ValueError):
+            raise InputError(
+                f"the attribute {name} of {path} is no JSON; give a file that has it as"
+                f" {kind.command} wrote it"
+            ) from None
 
 
 def _read_folder(path: Path, kind: Kind) -> xr.Dataset:

@@ -6,7 +6,6 @@ or end the process. A process of its own can be ended and can die.
 
 import hashlib
 import os
-import resource
 import subprocess
 import sys
 from functools import cache
@@ -80,6 +79,8 @@ def _read_all(image: bytes) -> None:
 
 
 if __name__ == "__main__":
+    import resource
+
     seconds = int(sys.argv[1])
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
