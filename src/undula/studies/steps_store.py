@@ -96,7 +96,7 @@ def load_steps(path: Path | str) -> xr.Dataset:
     missing += [name for name in _ATTRIBUTES if name not in stored.attrs]
     if missing:
         raise InputError(
-            f"{path} lacks {', '.join(missing)}; give a file that has all that {STEPS.command} wrote"
+            f"{path} lacks {', '.join(missing)}; give a file as {STEPS.command} wrote it"
         )
     return stored
 
