@@ -17,9 +17,10 @@ import xarray as xr
 import zarr
 
 import undula as un
-from damage import AGAIN, KINDS, SAME, TOLD, command, make_run, make_study, study
+from damage import AGAIN, KINDS, SAME, TOLD, command, job, keep_answer, make_run, make_study, study
 from refusal import complaint
 from small_studies import work_off
+from undula.app.catalogue_tasks import Job
 from undula.app.cli import main
 from undula.app.sweep_work import SweepWork
 from undula.studies import trial_reading
@@ -220,7 +221,7 @@ def test_points_of_a_damaged_or_missing_chunk_are_not_done_and_done_again(
     name: str, spoil: Callable[[Path], None], store: Path, made: Path
 ) -> None:
     whole = load_study(made / "s.zarr").load()
-    chunk = next(path for path in (store / name).iterdir() if path.name[0] != ".")
+    chunk = next((store / name).glob("[0-9]*"))
     spoil(chunk)
     if name == "status" and spoil is Path.unlink:
         found = load_study(store).load()  # as if it had not been written yet
@@ -241,7 +242,7 @@ def test_points_of_a_damaged_or_missing_chunk_are_not_done_and_done_again(
 def test_axes_and_seeds_that_are_damaged_are_those_of_the_study(
     name: str, store: Path, made: Path
 ) -> None:
-    flip(next(path for path in (store / name).iterdir() if path.name[0] != "."))
+    flip(next((store / name).glob("[0-9]*")))
     xr.testing.assert_identical(load_study(store).load(), load_study(made / "s.zarr").load())
 
 
@@ -340,7 +341,7 @@ def test_a_store_of_ours_in_the_third_format_with_a_strange_codec_is_refused(
 @pytest.mark.slow
 def test_a_sweep_in_processes_of_its_own_does_damaged_points_again(store: Path, made: Path) -> None:
     whole = load_study(made / "s.zarr").load()
-    flip(next(path for path in (store / "verdict").iterdir() if path.name[0] != "."))
+    flip(next((store / "verdict").glob("[0-9]*")))
     words = [UNDULA, "sweep", made / "study.toml", "--workers", "1", "--out", store, "--json"]
     told = subprocess.run(words, capture_output=True, text=True, timeout=300, check=False)
     assert told.returncode == 0, told.stderr
@@ -349,3 +350,35 @@ def test_a_sweep_in_processes_of_its_own_does_damaged_points_again(store: Path, 
     xr.testing.assert_identical(
         load_study(store).load().drop_vars("seconds"), whole.drop_vars("seconds")
     )
+
+
+# ---------------------------------------------------------------- what a report keeps
+
+
+def kept_job(folder: Path) -> Job:
+    keep_answer(folder)
+    return job(folder)
+
+
+@pytest.mark.parametrize("name", ["answer.json", "run.nc", "steps.nc"])
+def test_a_task_of_which_a_file_is_damaged_is_done_again(
+    name: str, run: Path, tmp_path: Path
+) -> None:
+    task = kept_job(tmp_path / "task")
+    if name != "answer.json":
+        (task.folder / name).write_bytes(run.read_bytes())
+    assert task.is_done()
+    flip(task.folder / name)
+    assert not task.is_done()
+    task.prepare()
+    # A series would go on with damaged steps; an answer is replaced.
+    assert not (task.folder / name).exists() or name == "answer.json"
+
+
+def test_a_task_of_which_the_study_is_damaged_is_done_again(store: Path, tmp_path: Path) -> None:
+    task = kept_job(tmp_path / "task")
+    shutil.copytree(store, task.folder / "study.zarr")
+    assert task.is_done()
+    flip(next((task.folder / "study.zarr" / "verdict").glob("[0-9]*")))
+    with pytest.warns(StoredWarning, match="3 of its points count as not done"):
+        assert not task.is_done()

@@ -7,18 +7,21 @@ import json
 import shlex
 import shutil
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from undula.analysis.sweep_points import NOT_DONE
 from undula.app.answers import DONE
 from undula.compiled import PACKAGE
 from undula.errors import InputError
 from undula.studies.claims import Answer
 from undula.studies.digests import sealed_json, unsealed_json
 from undula.studies.items import Item, Task
+from undula.studies.seal import is_whole
+from undula.studies.study_store import load_study
 from undula.studies.whole_file import write_whole
 
 #: Sources that read answers and compute none: their changes leave all that is kept as it is.
@@ -35,6 +38,8 @@ _JUDGING = (
 )
 #: File in the folder of a task that holds its answer.
 _ANSWER = "answer.json"
+#: What commands store in it that carries checksums.
+_FILES, _STUDY = ("run.nc", "steps.nc"), "study.zarr"
 
 
 @dataclass(frozen=True)
@@ -79,6 +84,18 @@ class Job:
             return None
         return record if record is not None and record["key"] == self.key else None
 
+    def is_done(self) -> bool:
+        """Tell whether its record is kept, and all is undamaged that its command has stored."""
+        study = self.folder / _STUDY
+        if self.kept() is None or any(True for _ in _damaged_files(self.folder)):
+            return False
+        try:
+            if not study.is_dir():
+                return True
+            return bool((load_study(study, shapes=False)["status"] != NOT_DONE).all())
+        except InputError:
+            return False
+
     def keep(self, record: Mapping[str, Any]) -> None:
         """Store the record of its answer.
 
@@ -95,7 +112,17 @@ class Job:
         mark = self.folder / "key"
         if self.folder.exists() and (not mark.exists() or mark.read_bytes() != self.key.encode()):
             shutil.rmtree(self.folder)
+        for damaged in _damaged_files(self.folder):
+            # A series would go on with it; a study mends what is damaged of it.
+            damaged.unlink()
         write_whole(mark, self.key.encode(), overwrite=True)
+
+
+def _damaged_files(folder: Path) -> Iterator[Path]:
+    """Yield the result files in the folder of a task that are not as they were written."""
+    for file in (folder / name for name in _FILES):
+        if file.is_file() and not is_whole(file.read_bytes()):
+            yield file
 
 
 def jobs_of(items: Mapping[str, Item], inputs: Path, data: Path, *, quick: bool) -> dict[str, Job]:

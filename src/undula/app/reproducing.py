@@ -98,7 +98,7 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
     refuse_other_files(asked.out)
     claim_output(asked.out / "claims.json", overwrite=True)
     jobs = jobs_of(items, asked.catalogue / "inputs", asked.out / "data", quick=asked.quick)
-    left = [job for job in _needed(wanted, jobs) if asked.fresh or job.kept() is None]
+    left = [job for job in _needed(wanted, jobs) if asked.fresh or not job.is_done()]
     status = _carry_on(left, asked)
     rows = {
         name: _rows(name, item, jobs, asked, wanted=name in wanted) for name, item in items.items()

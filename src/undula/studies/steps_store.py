@@ -15,8 +15,9 @@ from undula.analysis.observables import Range
 from undula.analysis.settle_and_step import Course, Step
 from undula.errors import InputError
 from undula.models.model import Model
+from undula.studies.result_kinds import Kind
 from undula.studies.spec import RunInput
-from undula.studies.store import Kind, read_result, write_result
+from undula.studies.store import read_result, write_result
 
 STEPS = Kind("steps 1", "undula step")
 

@@ -7,9 +7,7 @@ alone. A checksum behind all is held against the bytes before HDF5 sees them; th
 another, since it holds good also in a file that was annotated by other software.
 """
 
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -19,32 +17,19 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from undula.analysis.formats import RUN_FORMAT
 from undula.errors import InputError
 from undula.studies.digests import digest_of_arrays
 from undula.studies.doubts import warn_unchecked
+from undula.studies.result_kinds import (
+    RUN,
+    Kind,
+    check_format,
+    damaged,
+    refuse_broken_attributes,
+)
 from undula.studies.seal import Condition, condition, sealed
 from undula.studies.study_metadata import is_store, read_metadata
 from undula.studies.whole_file import write_whole
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of result file.
-
-    Attributes
-    ----------
-    format
-        Its name and number, which every file of it carries.
-    command
-        What writes such files.
-    """
-
-    format: str
-    command: str
-
-
-RUN = Kind(RUN_FORMAT, "undula run")
 
 _ENGINE: Any = "h5netcdf"
 _CHECKPOINT = "checkpoint"
@@ -54,8 +39,6 @@ _SAVED = "saved_"
 _DIGEST = "sha256"
 #: What a checkpoint goes on with besides its arrays: attributes of the root.
 _GOES_ON_WITH = ("input", "versions", "summary")
-#: Attributes of any kind that are JSON.
-_JSON = ("input", "versions", "summary", "health", "options", "units")
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -205,10 +188,10 @@ def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
     content = _read_bytes(path, kind)
     found = condition(content)
     if found is Condition.DAMAGED:
-        raise _damaged(path, kind)
+        raise damaged(path, kind)
     try:
         with h5py.File(BytesIO(content), "r") as root:
-            _check_format(path, kind, root.attrs)
+            check_format(path, kind, root.attrs)
             if group is not None and group not in root:
                 raise InputError(
                     f"{path} holds no {group}, since other software has stored it; give the file"
@@ -220,23 +203,11 @@ def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
         raise
     except Exception as error:
         # The HDF5 stack has no common exception for broken files: nearly any may come.
-        raise _damaged(path, kind) from error
+        raise damaged(path, kind) from error
     if found is Condition.UNCHECKED and group is None:
-        _refuse_broken_attributes(path, kind, dataset)
+        refuse_broken_attributes(path, kind, dataset)
         warn_unchecked(path)
     return dataset
-
-
-def _refuse_broken_attributes(path: Path, kind: Kind, dataset: xr.Dataset) -> None:
-    """Refuse attributes that are no JSON any longer, of a file that other software has stored."""
-    for name in _JSON:
-        try:
-            json.loads(dataset.attrs.get(name, "{}"))
-        except (TypeError, ValueError):
-            raise InputError(
-                f"the attribute {name} of {path} is no JSON; give a file that has it as"
-                f" {kind.command} wrote it"
-            ) from None
 
 
 def _read_folder(path: Path, kind: Kind) -> xr.Dataset:
@@ -245,7 +216,7 @@ def _read_folder(path: Path, kind: Kind) -> xr.Dataset:
     from undula.studies.zarr_copy import read_copy
 
     metadata = read_metadata(path)
-    _check_format(path, kind, metadata.attributes)
+    check_format(path, kind, metadata.attributes)
     return _without_fill(read_copy(path, metadata).drop_encoding())
 
 
@@ -281,27 +252,5 @@ def _read_bytes(path: Path, kind: Kind) -> bytes:
             f"cannot read the result file {path} ({reason}); give a readable result file"
         ) from error
     if signature and _HDF5_SIGNATURE.startswith(signature):
-        raise _damaged(path, kind)
+        raise damaged(path, kind)
     raise InputError(f"{path} is not a NetCDF4 file; give a result file written by {kind.command}")
-
-
-def _damaged(path: Path, kind: Kind) -> InputError:
-    return InputError(f"{path} is cut short or damaged; make it again with {kind.command}")
-
-
-def _check_format(path: Path, kind: Kind, attributes: Mapping[str, Any]) -> None:
-    found = attributes.get("undula_format")
-    if found is None:
-        raise InputError(
-            f"{path} was not written by undula; give a result file written by {kind.command}"
-        )
-    if str(found).split()[:1] != kind.format.split()[:1]:
-        raise InputError(
-            f"{path} is a result of another command ({str(found)!r}); give a result file written"
-            f" by {kind.command}"
-        )
-    if found != kind.format:
-        raise InputError(
-            f"{path} has the format {str(found)!r}, but this version of undula reads"
-            f" {kind.format!r}; use the version that wrote it"
-        )

@@ -23,10 +23,11 @@ from undula.studies.blocks import Blocks
 from undula.studies.chunks import Chunks
 from undula.studies.differences import difference
 from undula.studies.point import software
+from undula.studies.result_kinds import Kind
 from undula.studies.seal import is_whole
 from undula.studies.sound_store import SoundStore
 from undula.studies.sound_study import sound_dataset
-from undula.studies.store import Kind, read_result
+from undula.studies.store import read_result
 from undula.studies.study import Study
 from undula.studies.study_columns import STATUS, columns_of
 from undula.studies.study_layout import FORMAT, RUNS, ZARR_FORMAT, known_arrays, lay_out

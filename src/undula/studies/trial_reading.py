@@ -13,7 +13,7 @@ from io import BytesIO
 from typing import Any
 
 #: Seconds of the processor that the reading may take, and further ones for each byte.
-_SECONDS, _SECONDS_A_BYTE = 20, 1e-7
+_SECONDS, _SECONDS_A_BYTE = 5, 1e-7
 #: The clock may run so many times as long, on a machine with much else to do.
 _PATIENCE = 10
 #: No compression of HDF5 makes zeros shorter than by this factor; slack for files of few bytes.
