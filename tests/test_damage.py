@@ -164,7 +164,9 @@ def test_an_annotated_run_goes_on_if_its_checkpoint_is_whole(run: Path, made: Pa
 
 @pytest.mark.filterwarnings("ignore:.*carries no checksum")
 @pytest.mark.parametrize("what", ["input", "versions", "summary", "states", "nothing left"])
-def test_a_checkpoint_that_is_not_whole_is_refused_in_one_sentence(what: str, run: Path) -> None:
+def test_a_checkpoint_that_is_not_whole_is_refused_in_one_sentence(
+    what: str, run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     with h5py.File(run, "a") as file:
         if what == "nothing left":
             del file["checkpoint"]
@@ -174,6 +176,8 @@ def test_a_checkpoint_that_is_not_whole_is_refused_in_one_sentence(what: str, ru
         else:
             file.attrs[what] = str(file.attrs[what]).replace("0.02", "0.03").replace("0.1", "0.2")
     told = complaint(lambda: command("resume", run, "--until", "0.03"))
+    assert main(["resume", str(run), "--until", "0.03"]) == 2
+    assert capsys.readouterr().err == f"undula: {told}\n"
     assert ("holds no checkpoint" if what == "nothing left" else "not as undula run wrote") in told
 
 
