@@ -1,18 +1,15 @@
 """Run a model: the call behind `undula.integrate` and behind the command `undula run`."""
 
 import math
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from types import FrameType
 from typing import Literal
 
 import numpy as np
 
 from undula.analysis.evidence import GROWTH_FACTOR
+from undula.analysis.interrupts import interruptible
 from undula.analysis.judging import Exponents
 from undula.analysis.late import PLANAR_TOLERANCE
 from undula.analysis.naming import leaves_its_plane
@@ -212,24 +209,3 @@ def _progress(simulation: Simulation, seconds: float) -> Progress:
         steps=int(memory.count[names.STEPS]),
         seconds=seconds,
     )
-
-
-@contextmanager
-def interruptible() -> Iterator[Callable[[], bool]]:
-    """Note SIGINT instead of raising KeyboardInterrupt amid a step; a second one does raise."""
-    if threading.current_thread() is not threading.main_thread():
-        yield lambda: False
-        return
-    noted = False
-    before = signal.getsignal(signal.SIGINT)
-
-    def note(_signum: int, _frame: FrameType | None) -> None:
-        nonlocal noted
-        noted = True
-        signal.signal(signal.SIGINT, before)
-
-    signal.signal(signal.SIGINT, note)
-    try:
-        yield lambda: noted
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -67,6 +67,12 @@ def refuse(sentence: str, *, as_json: bool) -> int:
     return BAD_INPUT
 
 
+def interrupted() -> int:
+    """Tell that a command was ended before there was anything to keep; return the exit status."""
+    notice("interrupted before there was a result; nothing has been kept")
+    return INTERRUPTED
+
+
 def finite(value: Any) -> Any:
     """Return a JSON value with null in place of every number that JSON cannot hold."""
     if isinstance(value, Mapping):

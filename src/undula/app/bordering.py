@@ -7,7 +7,7 @@ from typing import Any
 import xarray as xr
 
 from undula.analysis.borders import Borders
-from undula.analysis.integrate import interruptible
+from undula.analysis.interrupts import interruptible
 from undula.analysis.parameters import FORCE
 from undula.analysis.sweep_points import axes_of, varied
 from undula.app.answers import notice

@@ -241,16 +241,12 @@ def carry_out(command: tuple[str, ...], *, quietly: bool = True) -> dict[str, An
         `status`, the exit status; `answer`, its JSON; `said`, the last line on standard error;
         `seconds`.
     """
-    import dask
-
     from undula.app.cli import main
 
     began = time.monotonic()
     answered, said = io.StringIO(), io.StringIO()
     with contextlib.ExitStack() as stack:
         stack.enter_context(contextlib.redirect_stdout(answered))
-        # Inside of a worker xarray would ask the scheduler for a lock of each file that it writes.
-        stack.enter_context(dask.config.set(scheduler="synchronous"))
         if quietly:
             stack.enter_context(contextlib.redirect_stderr(said))
         try:

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from undula.analysis.interrupts import endings_heard
+from undula.app.answers import INTERRUPTED, interrupted, refuse
 from undula.app.help import Commands
 from undula.app.options import (
     Budget,
@@ -74,17 +76,17 @@ def _carry_out(given: Sequence[str]) -> int:
     from undula.app.doubts import doubts_told
 
     try:
-        with doubts_told():
-            return int(app(given, prog_name="undula", standalone_mode=False) or 0)
+        with doubts_told(), endings_heard():
+            status = int(app(given, prog_name="undula", standalone_mode=False) or 0)
+        # Which is what typer makes of KeyboardInterrupt.
+        return interrupted() if status == INTERRUPTED else status
     except KeyboardInterrupt:
-        return 130
+        return interrupted()
     except Exception as error:
         # A wrong option, too, is bad input; its class has no public name in all versions of typer.
         told = getattr(error, "format_message", None)
         if told is None and not isinstance(error, InputError):
             raise
-        from undula.app.answers import refuse
-
         return refuse(told() if told else str(error), as_json="--json" in given)
 
 

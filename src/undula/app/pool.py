@@ -1,47 +1,41 @@
 """Workers for the pieces of a study: processes on this machine, or any scheduler's; on Dask."""
 
-import logging
 import queue
-import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import dask
-from dask.system import CPU_COUNT
-from distributed import (
-    CancelledError,
-    Client,
-    Future,
-    KilledWorker,
-    LocalCluster,
-    Worker,
-    WorkerPlugin,
-)
+from distributed import CancelledError, Client, Future, KilledWorker
 from distributed.comm.core import CommClosedError
 
+from undula.app.own_workers import closing, own_workers, silence, workers_that_fit
 from undula.errors import InputError
 
 #: Pieces for each thread that are with the workers or on their way: one to do, one to do next.
 AHEAD = 2
 #: Seconds between two looks at how many workers there are.
 LOOK_EVERY = 1.0
-#: So many workers of our own may die under a piece before it is blamed. Others have their own rule.
-DEATHS = 10
-#: Dask has its workers give back memory as soon as they can, and arrays of a megabyte then cost
-#: more to allocate than to fill: judging a run takes three times as long (docs/notes/sweeps.md).
-MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_TRIM_THRESHOLD_": 2**29}
-#: Pieces that the scheduler remembers when they are done: it would keep a hundred.
-REMEMBERED = 4
-#: Times that workers of our own are started if one dies meanwhile.
-STARTS = 5
-#: Seconds to wait for a scheduler to answer.
-PATIENCE = 20.0
+#: Seconds to wait for a scheduler to answer at first, and then at each look.
+PATIENCE, ANSWERS_IN = 20.0, 2.0
+#: Seconds after which the want of workers is told.
+TOLD_AFTER = 5.0
+#: Seconds without any worker after which a study is left: of our own, which start in some; of a
+#: scheduler's, which may have to wait for a machine; and without an answer from a scheduler.
+OWN_PATIENCE, FOREIGN_PATIENCE, SILENCE = 60.0, 600.0, 60.0
+#: Seconds between two times that workers are started in place of lost ones.
+MEND_EVERY = 10.0
 
 
 class LostError(Exception):
-    """The scheduler is gone."""
+    """There is nobody left to do the pieces; `status` and `told` say who is gone.
+
+    Both are words of an answer, as in "the study was left by its scheduler".
+    """
+
+    def __init__(self, status: str, told: str) -> None:
+        super().__init__(told)
+        self.status, self.told = status, told
 
 
 class DiedError(Exception):
@@ -49,13 +43,34 @@ class DiedError(Exception):
 
 
 class Pool:
-    """Workers that are given pieces and give back what they came to, in any order."""
+    """Workers that are given pieces and give back what they came to, in any order.
 
-    def __init__(self, client: Client) -> None:
-        self._client = client
+    Parameters
+    ----------
+    client
+        How to reach them.
+    say
+        Called with a sentence if there are none for a while.
+    count
+        How many there should be; None if that is not known.
+    mend
+        Starts others in place of those that are gone.
+    """
+
+    def __init__(
+        self,
+        client: Client,
+        say: Callable[[str], None],
+        count: int | None = None,
+        mend: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._client, self._say, self._count, self._mend = client, say, count, mend
+        self._patience = FOREIGN_PATIENCE if count is None else OWN_PATIENCE
         self._finished: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
         self._pieces: dict[Future[Any], Any] = {}
-        self._threads, self._look_due = 0, 0.0
+        now = time.monotonic()
+        self._threads, self._look_due, self._mend_due = 0, now, now + MEND_EVERY
+        self._answered, self._served, self._told = now, now, False
 
     @property
     def busy(self) -> bool:
@@ -64,17 +79,27 @@ class Pool:
 
     @property
     def has_room(self) -> bool:
-        """Whether a worker would soon have nothing to do."""
-        now = time.monotonic()
-        if now >= self._look_due:
-            self._threads = sum(self._client.nthreads().values())
-            self._look_due = now + LOOK_EVERY
+        """Whether a worker would soon have nothing to do.
+
+        Raises
+        ------
+        LostError
+            The scheduler is gone, or there have been no workers for long.
+        """
+        self._look()
         # Pieces are ready for workers that are still to come.
         return len(self._pieces) < AHEAD * max(1, self._threads)
 
     def give(self, piece: Any, work: Callable[..., Any], *what: Any) -> None:
-        """Send a piece away: what the work on it is to be called with, in plain types."""
-        future = self._client.submit(work, *what, pure=False)
+        """Send a piece away: what the work on it is to be called with, in plain types.
+
+        Raises
+        ------
+        LostError
+            The scheduler is gone.
+        """
+        with self._reached():
+            future = self._client.submit(work, *what, pure=False)
         self._pieces[future] = piece
         future.add_done_callback(self._finished.put)
 
@@ -86,10 +111,11 @@ class Pool:
         Raises
         ------
         LostError
-            The scheduler is gone.
+            The scheduler is gone, or there have been no workers for long.
         InputError
             The workers cannot run undula.
         """
+        self._look()
         try:
             ready = [self._finished.get(timeout=patience)]
         except queue.Empty:
@@ -99,25 +125,72 @@ class Pool:
         for future in ready:
             yield self._pieces.pop(future), _outcome(future)
 
+    def _look(self) -> None:
+        """Count the workers every now and then, and do something about lost ones."""
+        now = time.monotonic()
+        if now < self._look_due:
+            return
+        self._count_threads(now)
+        now = time.monotonic()
+        self._look_due = now + LOOK_EVERY
+        if now - self._answered > SILENCE:
+            raise _no_scheduler()
+        if now - self._served > self._patience:
+            raise LostError("no workers", "left without workers")
+        if now - self._served > TOLD_AFTER and not self._told and self._count is None:
+            self._told = True
+            self._say(f"the scheduler has no workers; waiting for {self._patience:g} s for some")
+        if self._count is not None and self._threads < self._count and now > self._mend_due:
+            self._mend_due = now + MEND_EVERY
+            self._mend()
+
+    def _count_threads(self, now: float) -> None:
+        try:
+            with self._reached():
+                scheduler: Any = self._client.scheduler
+                # Those that pause have run out of memory and take no more.
+                threads = self._client.sync(
+                    scheduler.ncores_running, workers=None, callback_timeout=ANSWERS_IN
+                )
+        except TimeoutError:
+            return
+        self._answered, self._threads = now, sum(threads.values())
+        if self._threads:
+            self._served, self._told = now, False
+
+    @contextmanager
+    def _reached(self) -> Iterator[None]:
+        """Tell whatever a client raises that has lost its scheduler."""
+        try:
+            yield
+        except TimeoutError:
+            raise
+        except Exception as error:
+            if isinstance(error, OSError) or self._client.status != "running":
+                raise _no_scheduler() from error
+            raise
+        if self._client.status != "running":
+            # It tries to come back, but whoever was there has forgotten all pieces.
+            raise _no_scheduler()
+
+
+def _no_scheduler() -> LostError:
+    return LostError("scheduler lost", "left by its scheduler")
+
 
 def _outcome(future: Future[Any]) -> Any:
+    if future.cancelled():
+        raise _no_scheduler()
     try:
         return future.result()
     except KilledWorker as error:
         return DiedError(str(error))
     except (CancelledError, CommClosedError) as error:
-        raise LostError from error
+        raise _no_scheduler() from error
     except ImportError as error:
         raise InputError(
             f"the workers cannot import undula ({error}); install the same version there"
         ) from error
-
-
-class _LetDriverStop(WorkerPlugin):
-    """Ctrl-C in a terminal reaches workers too; it is the driver that ends them in order."""
-
-    def setup(self, worker: Worker) -> None:  # noqa: ARG002
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager
@@ -131,59 +204,30 @@ def pool(workers: int | None, scheduler: str | None, say: Callable[[str], None])
     scheduler
         Address of a running Dask scheduler, whose workers are used instead.
     say
-        Called with a sentence on where the dashboard is.
+        Called with a sentence on where the dashboard is, and if there are no workers.
 
     Raises
     ------
     InputError
-        There is no scheduler at the address.
+        There is no scheduler at the address, or so many workers do not fit.
     """
-    with _client(workers, scheduler) as client:
+    if scheduler is None:
+        count = workers_that_fit(workers)
+        with own_workers(count) as (client, mend):
+            say(f"dashboard: {client.dashboard_link}")
+            yield Pool(client, say, count, mend)
+        return
+    with closing(_client_of(scheduler)) as client:
         if client.dashboard_link:
             say(f"dashboard: {client.dashboard_link}")
-        yield Pool(client)
+        yield Pool(client, say)
 
 
-@contextmanager
-def _client(workers: int | None, scheduler: str | None) -> Iterator[Client]:
-    # What workers say of their own deaths is told by what becomes of their pieces.
-    for name in ("distributed", "distributed.client"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)
-    if scheduler is not None:
-        try:
-            client = Client(scheduler, timeout=PATIENCE)
-        except (OSError, ValueError) as error:
-            raise InputError(
-                f"no Dask scheduler answers at --scheduler {scheduler} ({error}); check the address"
-            ) from error
-        with client:
-            yield client
-        return
-    settings = {
-        "distributed.scheduler.allowed-failures": DEATHS,
-        "distributed.diagnostics.computations.max-history": REMEMBERED,
-    } | {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in MEMORY.items()}
-    with (
-        dask.config.set(settings),
-        _cluster(workers or CPU_COUNT) as cluster,
-        Client(cluster) as client,
-    ):
-        client.register_plugin(_LetDriverStop())
-        yield client
-
-
-def _cluster(workers: int, starts: int = STARTS) -> LocalCluster:
+def _client_of(scheduler: str) -> Client:
+    silence()
     try:
-        return LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            # Any port that is free; the first choice might be taken.
-            dashboard_address="127.0.0.1:0",
-            silence_logs=logging.CRITICAL,
-        )
-    except RuntimeError:
-        # A worker that dies while it starts ends the start of all.
-        if starts == 1:
-            raise
-    return _cluster(workers, starts - 1)
+        return Client(scheduler, timeout=PATIENCE)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"no Dask scheduler answers at --scheduler {scheduler} ({error}); check the address"
+        ) from error

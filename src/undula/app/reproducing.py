@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from undula.analysis.integrate import interruptible
+from undula.analysis.interrupts import interruptible
 from undula.app.answers import DONE, INTERRUPTED, STOPPED_EARLY, finite, notice, reply
 from undula.app.catalogue_tasks import Job, answers_of, carry_out, jobs_of, refuse_other_files
 from undula.app.catalogue_work import TaskWork

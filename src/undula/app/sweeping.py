@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from undula.analysis.integrate import interruptible
+from undula.analysis.interrupts import interruptible
 from undula.analysis.schedule import Ending
 from undula.app.answers import DONE, STOPPED_EARLY, notice, reply
 from undula.app.compiling import compilation_announced
@@ -25,6 +25,7 @@ _WHY = {
     "interrupted": "interrupted",
     "out of time": "out of its budget of time",
     "scheduler lost": "left by its scheduler",
+    "no workers": "left without workers",
 }
 
 
@@ -133,8 +134,8 @@ def _carry_on(work: SweepWork, study: Study, asked: Asked, began: float) -> str:
                     tell(work.left, work.failed)
             finally:
                 work.save()
-    except LostError:
-        return "scheduler lost"
+    except LostError as lost:
+        return lost.status
     return "done"
 
 

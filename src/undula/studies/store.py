@@ -12,6 +12,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import dask
 import h5py
 import numpy as np
 import numpy.typing as npt
@@ -171,7 +172,9 @@ def _append(image: BytesIO, content: xr.Dataset, group: str | None) -> None:
     plain = content.drop_encoding()
     encoding = {name: _encoding(variable) for name, variable in plain.variables.items()}
     mode: Any = "w" if group is None else "a"
-    plain.to_netcdf(image, mode=mode, group=group, engine=_ENGINE, encoding=encoding)
+    # Inside of a worker xarray would ask the scheduler for a lock of what is in memory here.
+    with dask.config.set(scheduler="synchronous"):
+        plain.to_netcdf(image, mode=mode, group=group, engine=_ENGINE, encoding=encoding)
 
 
 def _encoding(variable: xr.Variable) -> dict[str, Any]:
