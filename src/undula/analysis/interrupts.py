@@ -37,8 +37,8 @@ def endings_heard() -> Iterator[None]:
 class _Note:
     """Notes a signal; one that comes later, too, raises KeyboardInterrupt."""
 
-    def __init__(self) -> None:
-        self.since: float | None = None
+    def __init__(self, since: float | None) -> None:
+        self.since = since
 
     def __call__(self, signum: int, frame: FrameType | None) -> None:
         now = time.monotonic()
@@ -53,13 +53,15 @@ def interruptible() -> Iterator[Callable[[], bool]]:
     """Note a signal instead of raising KeyboardInterrupt amid a step; a second one does raise.
 
     Of the signals these are noted that would raise it: Ctrl-C, and in a program that is within
-    `endings_heard` the others. Within another such block the outer one is told, too, at its end.
+    `endings_heard` the others. A block within another knows what that
+    one has noted, and tells it at its end what it has noted itself.
     """
     if threading.current_thread() is not threading.main_thread():
         yield lambda: False
         return
-    note = _Note()
     before = {one: signal.getsignal(one) for one in ENDINGS}
+    outer = [handler for handler in before.values() if isinstance(handler, _Note)]
+    note = _Note(next((one.since for one in outer if one.since is not None), None))
     heard = {one: handler for one, handler in before.items() if _raises(handler)}
     for one in heard:
         signal.signal(one, note)

@@ -116,8 +116,8 @@ def status(path: Path, *, as_json: bool) -> int:
 
 def _carry_on(work: SweepWork, study: Study, asked: Asked, began: float) -> str:
     """Do what is left, as far as time and patience go; return how it ended."""
-    _compile(study)
     try:
+        _compile(study)
         with (
             interruptible() as interrupted,
             pool(asked.workers, asked.scheduler, notice) as workers,
@@ -136,6 +136,8 @@ def _carry_on(work: SweepWork, study: Study, asked: Asked, began: float) -> str:
                 work.save()
     except LostError as lost:
         return lost.status
+    except KeyboardInterrupt:
+        return "interrupted"
     return "done"
 
 
