@@ -1,12 +1,13 @@
 """Workers for the pieces of a study: processes on this machine, or any scheduler's; on Dask."""
 
+import asyncio
 import queue
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from distributed import CancelledError, Client, Future, KilledWorker
+from distributed import CancelledError, Client, Future, KilledWorker, Security, rpc
 from distributed.comm.core import CommClosedError
 
 from undula.app.own_workers import closing, own_workers, silence, workers_that_fit
@@ -226,8 +227,16 @@ def pool(workers: int | None, scheduler: str | None, say: Callable[[str], None])
 def _client_of(scheduler: str) -> Client:
     silence()
     try:
+        # A client waits for ever for a scheduler that takes its call and says nothing.
+        asyncio.run(asyncio.wait_for(_call(scheduler), PATIENCE))
         return Client(scheduler, timeout=PATIENCE)
     except (OSError, ValueError) as error:
         raise InputError(
             f"no Dask scheduler answers at --scheduler {scheduler} ({error}); check the address"
         ) from error
+
+
+async def _call(scheduler: str) -> None:
+    arguments = Security().get_connection_args("client")
+    async with rpc(scheduler, timeout=PATIENCE, connection_args=arguments) as there:
+        await there.identity()

@@ -1,5 +1,6 @@
 """The layout of a stored study: which arrays there are, in what chunks, and what they say."""
 
+import errno
 import json
 import os
 import platform
@@ -37,6 +38,8 @@ _LIBRARIES = ("undula", "numpy", "numba")
 def lay_out(path: Path, study: Study) -> None:
     """Make the store of a study without any results, whole or not at all.
 
+    If another process was quicker, what it has made is left as it is.
+
     Raises
     ------
     OSError
@@ -46,6 +49,9 @@ def lay_out(path: Path, study: Study) -> None:
     try:
         _fill(temporary, study)
         os.rename(temporary, path)
+    except OSError as error:
+        if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+            raise
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 

@@ -215,7 +215,6 @@ def open_study(path: Path, study: Study) -> StudyStore:
     if not path.exists():
         with folder_trouble_told(path):
             lay_out(path, study)
-        return StudyStore(path, study)
     metadata = _metadata_of(path)
     told = metadata.attributes
     if told["software"] != software():
