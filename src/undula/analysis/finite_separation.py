@@ -10,10 +10,12 @@ another place.
 Source: Ling, Guo & Kanso (2018), Lyapunov exponents from a finite separation of the mean position.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from undula.analysis.lyapunov import NotFollowed
 from undula.analysis.motion import Motion
 from undula.analysis.observables import mean_position
 from undula.analysis.schedule import Ending, Schedule
@@ -73,7 +75,8 @@ def finite_separation(
     rtol: float = 1e-9,
     atol: float = 1e-12,
     seed: int = 1,
-) -> Separation:
+    progress: Callable[[float], None] | None = None,
+) -> Separation | NotFollowed:
     """Measure how fast runs from nearby states part.
 
     Parameters
@@ -89,11 +92,17 @@ def finite_separation(
         Tolerances of the integration, far below the first separation of 1e-7.
     seed : int
         Seed of the first separations.
+    progress : callable, optional
+        Called with the part of all runs that is done, every few milliseconds.
+
+    Returns
+    -------
+    Separation or NotFollowed
 
     Raises
     ------
     InputError
-        An argument is out of its range, joints wind up, or a run fails.
+        An argument is out of its range, or joints wind up.
     """
     if not (is_number(duration) and duration > 0.0):
         raise InputError(f"duration = {duration!r} has to be a positive finite number")
@@ -107,9 +116,15 @@ def finite_separation(
     schedule = Schedule(until=duration, samples=SAMPLES, rtol=rtol, atol=atol)
     random = np.random.default_rng(seed)
     time, distances, fits = np.zeros(0), [], []
-    for _ in range(pairs):
+    for done in range(pairs):
         nearby = state + SEPARATION * random.normal(size=state.size)
-        one, other = _run(model, state, schedule), _run(model, nearby, schedule)
+        both = []
+        for which, x in enumerate((state, nearby)):
+            motion = _run(model, x, schedule, progress, (2 * done + which, 2 * pairs))
+            if isinstance(motion, NotFollowed):
+                return motion
+            both.append(motion)
+        one, other = both
         time, state = one.time, model.from_nodes(one.nodes[-1])
         here, there = _out_and_up(one), _out_and_up(other)
         distances.append(np.linalg.norm(here - there, axis=1))
@@ -125,12 +140,20 @@ def finite_separation(
     )
 
 
-def _run(model: Model, x: State, schedule: Schedule) -> Motion:
-    simulation = Simulation.begin(model, x, schedule)
+def _run(
+    model: Model,
+    x: State,
+    schedule: Schedule,
+    progress: Callable[[float], None] | None,
+    place: tuple[int, int],
+) -> Motion | NotFollowed:
+    """Return a run from a state, which is one of so many."""
+    simulation, (number, count) = Simulation.begin(model, x, schedule), place
     while simulation.advance():
-        pass
+        if progress:
+            progress((number + simulation.time / schedule.end) / count)
     if simulation.ending is Ending.FAILED:
-        raise InputError(f"the motion could not be followed: {simulation.cause}")
+        return NotFollowed(f"the motion could not be followed: {simulation.cause}")
     return Motion.of(model, simulation.times, simulation.states)
 
 

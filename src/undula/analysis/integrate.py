@@ -10,7 +10,7 @@ import numpy as np
 
 from undula.analysis.evidence import GROWTH_FACTOR
 from undula.analysis.interrupts import interruptible
-from undula.analysis.judging import Exponents
+from undula.analysis.judging import CutShortError, Exponents, Watch
 from undula.analysis.late import PLANAR_TOLERANCE
 from undula.analysis.naming import leaves_its_plane
 from undula.analysis.regimes import UNDECIDED
@@ -31,17 +31,25 @@ FIRST_ASKED = 240
 BRIEFLY_TOLD = "planar flapping"
 #: What it is else is told from steps that are as exact: errors of larger ones may keep it alive.
 TIGHT = 1e-6
+#: Why there are no Lyapunov exponents although they were begun.
+STOPPED = ("they were interrupted", "they were out of their budget of time")
+#: Runs that ended so are not looked at any longer.
+CUT_SHORT = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run is: time reached and its end at the latest [T], length of the step, seconds."""
+    """Where a run is: time reached and its end at the latest [T], length of the step, seconds.
+
+    While Lyapunov exponents are computed `exponents` is the part of them that is done.
+    """
 
     time: float
     end: float
     step: float
     steps: int
     seconds: float
+    exponents: float | None = None
 
 
 def integrate(
@@ -76,7 +84,7 @@ def integrate(
         Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis,
         and absolute [rad].
     budget : float
-        Seconds after which the run is ended with what it has.
+        Seconds after which the run is ended with what it has; Lyapunov exponents are a part of it.
     lyapunov : bool
         Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
     progress : callable, optional
@@ -95,9 +103,13 @@ def integrate(
     """
     schedule = Schedule(until=until, limit=limit, samples=samples, rtol=rtol, atol=atol)
     simulation = Simulation.begin(model, start, schedule)
+    begun = time.monotonic()
     judged = carry_on(simulation, budget=budget, progress=progress)
+    if simulation.ending in CUT_SHORT:
+        return Run.of(simulation, Exponents.NEVER)
     if lyapunov:
-        return Run.of(simulation, Exponents.ALWAYS)
+        left = budget - (time.monotonic() - begun)
+        return with_exponents(simulation, Exponents.ALWAYS, budget=left, progress=progress)
     return judged or Run.of(simulation)
 
 
@@ -122,10 +134,11 @@ def carry_on(
     while due <= simulation.watch.seen:
         due *= 2
     with interruptible() as interrupted:
+        watch = _watch(simulation, begun, budget, interrupted, progress)
         while True:
             goes_on, seconds = simulation.advance(), time.monotonic() - begun
             if not goes_on:
-                judged = _settled(simulation)
+                judged = _settled(simulation, watch)
                 if simulation.ending is not Ending.RUNNING:
                     return judged
             if interrupted():
@@ -138,16 +151,53 @@ def carry_on(
                 progress(_progress(simulation, seconds))
             if simulation.watch.seen >= due:
                 due *= 2
-                judged = _irregular(simulation)
+                judged = _irregular(simulation, watch)
                 if judged is not None:
                     return judged
 
 
-def _settled(simulation: Simulation) -> Run | None:
+def with_exponents(
+    simulation: Simulation,
+    exponents: Exponents,
+    *,
+    budget: float = float("inf"),
+    progress: Callable[[Progress], None] | None = None,
+) -> Run:
+    """Judge a run by Lyapunov exponents, too, unless Ctrl-C or the budget of seconds ends them.
+
+    Then the run has none, and tells why (`Run.without_lyapunov`).
+    """
+    with interruptible() as interrupted:
+        watch = _watch(simulation, time.monotonic(), budget, interrupted, progress)
+        return Run.of(simulation, exponents, watch)
+
+
+def _watch(
+    simulation: Simulation,
+    begun: float,
+    budget: float,
+    interrupted: Callable[[], bool],
+    progress: Callable[[Progress], None] | None,
+) -> Watch:
+    """Return what shows how far exponents are, and ends them after Ctrl-C or the budget."""
+
+    def watch(part: float) -> None:
+        seconds = time.monotonic() - begun
+        if interrupted():
+            raise CutShortError(STOPPED[0])
+        if seconds > budget:
+            raise CutShortError(STOPPED[1])
+        if progress is not None:
+            progress(replace(_progress(simulation, seconds), exponents=part))
+
+    return watch
+
+
+def _settled(simulation: Simulation, watch: Watch) -> Run | None:
     """Return a run that has settled; have it go on if it takes more of it to name the motion."""
     if simulation.ending is not Ending.SETTLED:
         return None
-    run, settled = Run.of(simulation), simulation.settled
+    run, settled = Run.of(simulation, watch=watch), simulation.settled
     if settled and settled.brief and not _briefly_told(run, settled):
         if settled.brief == 1 and simulation.schedule.rtol > TIGHT:
             simulation.tighten(TIGHT)
@@ -183,7 +233,7 @@ def _until_flat(share: Halves) -> float:
     return math.log(share.last / PLANAR_TOLERANCE) / math.log(share.first / share.last)
 
 
-def _irregular(simulation: Simulation) -> Run | None:
+def _irregular(simulation: Simulation, watch: Watch) -> Run | None:
     """Return a run that waits for its motion to repeat itself if it is seen not to."""
     if not simulation.schedule.open_ended or simulation.settled is not None:
         return None
@@ -193,7 +243,7 @@ def _irregular(simulation: Simulation) -> Run | None:
         simulation.tighten(TIGHT)
         return None
     simulation.ending = Ending.IRREGULAR
-    run = Run.of(simulation)
+    run = Run.of(simulation, watch=watch)
     if run.lyapunov is not None and run.verdict.name != UNDECIDED:
         return run
     simulation.ending = Ending.RUNNING

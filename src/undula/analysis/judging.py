@@ -1,5 +1,6 @@
 """A run judged: its verdict, the motion it was made on, and Lyapunov exponents if it takes them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
@@ -8,7 +9,7 @@ import numpy as np
 from undula.analysis.arrival import FALLEN, NEAR, TURNS, Arrival, motion_of
 from undula.analysis.close_up import CloseUp
 from undula.analysis.finite_separation import FOLDS, Separation, finite_separation
-from undula.analysis.lyapunov import Lyapunov, lyapunov
+from undula.analysis.lyapunov import Lyapunov, NotFollowed, lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.regimes import (
     MOST,
@@ -33,6 +34,18 @@ FOLLOWED = {"maxima": 300.0, "periods": 150.0, "turns": 50.0}
 LENGTHS = (1, 8)
 #: Pairs of regular motions are watched for this part of that time.
 WATCHED = 1.0 / 15.0
+_STRAIGHT_HAS = (
+    "a motion that ends straight has the eigenvalues of the straight state for exponents: ask"
+    " undula stability"
+)
+
+
+#: Called with the part that is done of exponents, so that it can be shown, or end them.
+Watch = Callable[[float], None]
+
+
+class CutShortError(Exception):
+    """Raised by a `Watch` that ends the exponents; its text says why."""
 
 
 class Exponents(Enum):
@@ -74,6 +87,7 @@ def judge(
     last: Array,
     come_to: Settled | Arrival | None,
     exponents: Exponents,
+    watch: Watch = lambda _: None,
 ) -> Judged:
     """Judge a run by its whole motion and by the close-up of its end.
 
@@ -90,6 +104,8 @@ def judge(
         for.
     exponents
         When to compute Lyapunov exponents.
+    watch
+        Told how far they are.
     """
     if isinstance(come_to, Arrival):
         judged = Judged(_arrived(come_to), motion_of(come_to, model, last))
@@ -101,8 +117,8 @@ def judge(
     if not asked and (judged.verdict.late is None or exponents is Exponents.NEVER):
         return judged
     try:
-        return _with_exponents(model, schedule, judged, last[:-RATES], parting=asked)
-    except InputError as error:
+        return _with_exponents(model, schedule, judged, last[:-RATES], watch, parting=asked)
+    except (InputError, CutShortError) as error:
         return Judged(judged.verdict, motion, without=str(error))
 
 
@@ -147,27 +163,50 @@ def _signals(motion: Motion) -> tuple[Instants, Shapes, Instants, Instants]:
 
 
 def _with_exponents(
-    model: Model, schedule: Schedule, judged: Judged, last: Array, *, parting: bool
+    model: Model, schedule: Schedule, judged: Judged, last: Array, watch: Watch, *, parting: bool
 ) -> Judged:
     """Follow the motion on from its last state, for longer if the first exponents do not tell."""
     if judged.verdict.name == STRAIGHT:
-        raise InputError(
-            "a motion that ends straight has the eigenvalues of the straight state for exponents:"
-            " ask undula stability"
-        )
-    duration = _duration(judged)
+        return Judged(judged.verdict, judged.motion, without=_STRAIGHT_HAS)
+    motion, duration = judged.motion, _duration(judged)
+    found = _told(model, schedule, judged.verdict, last, duration, watch)
+    if isinstance(found, NotFollowed):
+        return Judged(judged.verdict, motion, without=found.reason)
+    verdict = with_exponents(judged.verdict, found)
+    if not parting or model.winds:
+        return Judged(verdict, motion, found)
+    chaotic = found.value > SIGNIFICANT * found.error
+    watched = FOLDS / found.value if chaotic else WATCHED * duration
+    pairs = finite_separation(model, model.positions(last), watched, progress=watch)
+    if isinstance(pairs, NotFollowed):
+        return Judged(verdict, motion, found, without=pairs.reason)
+    return Judged(verdict, motion, found, pairs)
+
+
+def _told(
+    model: Model, schedule: Schedule, first: Verdict, last: Array, duration: float, watch: Watch
+) -> Lyapunov | NotFollowed:
+    """Return exponents over a time, or over a longer one if those do not tell."""
+    found: Lyapunov | NotFollowed = NotFollowed("no time was given")
     for times in LENGTHS:
-        found = lyapunov(model, last, times * duration, rtol=schedule.rtol, atol=schedule.atol)
-        verdict = with_exponents(judged.verdict, found)
-        unclear = verdict.name == UNDECIDED and found.beyond_symmetry > 0.0
-        if judged.verdict.late is None or not unclear:
+        found = lyapunov(
+            model,
+            last,
+            times * duration,
+            rtol=schedule.rtol,
+            atol=schedule.atol,
+            progress=_of_blocks(watch),
+        )
+        if isinstance(found, NotFollowed) or first.late is None:
             break
-    pairs = None
-    if parting and not model.winds:
-        chaotic = found.value > SIGNIFICANT * found.error
-        watched = FOLDS / found.value if chaotic else WATCHED * duration
-        pairs = finite_separation(model, model.positions(last), watched)
-    return Judged(verdict, judged.motion, found, pairs)
+        name = with_exponents(first, found).name
+        if not (name == UNDECIDED and found.beyond_symmetry > 0.0):
+            break
+    return found
+
+
+def _of_blocks(watch: Watch) -> Callable[[int, int], None]:
+    return lambda done, total: watch(done / total)
 
 
 def _duration(judged: Judged) -> float:

@@ -75,6 +75,13 @@ class Lyapunov:
         return float(self.errors[self._others[0]])
 
 
+@dataclass(frozen=True)
+class NotFollowed:
+    """No exponents, because the motion could not be followed; `reason` says why and what to do."""
+
+    reason: str
+
+
 def lyapunov(
     model: Model,
     state: State,
@@ -84,7 +91,7 @@ def lyapunov(
     atol: float = 1e-10,
     seed: int = 1,
     progress: Callable[[int, int], None] | None = None,
-) -> Lyapunov:
+) -> Lyapunov | NotFollowed:
     """Return the leading Lyapunov exponents of the motion that goes on from a state.
 
     Parameters
@@ -102,10 +109,14 @@ def lyapunov(
     progress : callable, optional
         Called with the number of blocks done and of all.
 
+    Returns
+    -------
+    Lyapunov or NotFollowed
+
     Raises
     ------
     InputError
-        The duration is not positive, the state does not move, or the motion cannot be followed.
+        The duration is not positive, or the state does not move.
     """
     if not (is_number(duration) and duration > 0.0):
         raise InputError(f"duration = {duration!r} has to be a positive finite number")
@@ -116,9 +127,9 @@ def lyapunov(
     changes = model.dimension
     for block in growth(model.system, memory, options, count=changes, duration=duration, seed=seed):
         if block.status is not Status.DONE:
-            raise InputError(
-                f"the motion could not be followed beyond t = {memory.real[TIME]:.6g}:"
-                f" {block.status.advice}"
+            reached = float(memory.real[TIME])
+            return NotFollowed(
+                f"the motion could not be followed beyond t = {reached:.6g}: {block.status.advice}"
             )
         blocks.append(block)
         symmetries = max(symmetries, _directions(model, memory))

@@ -17,7 +17,7 @@ from undula.analysis.frequency import (
     shape_swings,
 )
 from undula.analysis.health import Health, health_of
-from undula.analysis.judging import Exponents, Judged, judge
+from undula.analysis.judging import Exponents, Judged, Watch, judge
 from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
@@ -71,9 +71,14 @@ class Run:
     exponents: Exponents = Exponents.IF_IRREGULAR
 
     @classmethod
-    def of(cls, simulation: Simulation, exponents: Exponents = Exponents.IF_IRREGULAR) -> Self:
-        """Return the result that a simulation has come to so far."""
-        return cls(
+    def of(
+        cls,
+        simulation: Simulation,
+        exponents: Exponents = Exponents.IF_IRREGULAR,
+        watch: Watch | None = None,
+    ) -> Self:
+        """Return the result that a simulation has come to so far, judged at once if watched."""
+        run = cls(
             model=simulation.model,
             schedule=simulation.schedule,
             ending=simulation.ending,
@@ -86,9 +91,15 @@ class Run:
             checkpoint=simulation.checkpoint(),
             exponents=exponents,
         )
+        if watch is not None:
+            vars(run)["_judged"] = run._judge(watch)  # which is where it is kept
+        return run
 
     @cached_property
     def _judged(self) -> Judged:
+        return self._judge(lambda _: None)
+
+    def _judge(self, watch: Watch) -> Judged:
         return judge(
             self.model,
             self.schedule,
@@ -96,6 +107,7 @@ class Run:
             self.checkpoint["states"][-1],
             self.arrival or self.settled,
             self.exponents,
+            watch,
         )
 
     @cached_property
@@ -125,6 +137,11 @@ class Run:
     def lyapunov(self) -> Lyapunov | None:
         """Lyapunov exponents, if they were asked for or it took them to tell what the motion is."""
         return self._judged.exponents
+
+    @property
+    def without_lyapunov(self) -> str:
+        """Why there are no exponents, or no pairs of runs, although they were asked for."""
+        return self._judged.without
 
     @property
     def separation(self) -> Separation | None:
@@ -218,7 +235,7 @@ class Run:
             "margin": self.verdict.margin,
             "longer": self.verdict.longer,
             "lyapunov": _exponents(self.lyapunov, self.separation),
-            "without_lyapunov": self._judged.without or None,
+            "without_lyapunov": self.without_lyapunov or None,
             **self.figures(),
             "winding_angle": float(winding_angle(self.motion.nodes)[-1]),
             "precession": self._precession(),

@@ -11,7 +11,7 @@ from undula.analysis.interrupts import interruptible
 from undula.analysis.parameters import FORCE
 from undula.analysis.sweep_points import axes_of, varied
 from undula.app.answers import notice
-from undula.app.pool import DiedError, pool
+from undula.app.pool import DiedError, LostError, pool
 from undula.app.progress import swept
 from undula.errors import InputError
 from undula.studies.borders_store import Column, columns_of, keep_borders, kept_columns, tables_of
@@ -21,7 +21,7 @@ _PATIENCE = 0.2
 
 
 def borders_of(path: Path, store: xr.Dataset) -> Borders | None:
-    """Return the borders of a study; None if Ctrl-C came before all of them were there.
+    """Return the borders of a study; None if not all of them are there, as after Ctrl-C.
 
     Parameters
     ----------
@@ -43,14 +43,18 @@ def borders_of(path: Path, store: xr.Dataset) -> Borders | None:
     values = (float("nan"),) if parameter is None else tuple(store[parameter].values.tolist())
     up_to = float(store[FORCE].values.max())
     columns = kept_columns(path, store) or [None] * len(values)
+    why = "interrupted"
     if None in columns:
         job = {"tables": tables_of(store), "parameter": parameter, "up_to": up_to}
-        _solve(path, store, Borders(parameter, values, up_to, ()), job, columns)
+        try:
+            _solve(path, store, Borders(parameter, values, up_to, ()), job, columns)
+        except LostError as lost:
+            why = lost.told
     done = [column for column in columns if column is not None]
     if len(done) == len(columns):
         return Borders(parameter, values, up_to, tuple(done))
     notice(
-        f"interrupted with {len(columns) - len(done)} of {len(columns)} columns of borders to go;"
+        f"{why} with {len(columns) - len(done)} of {len(columns)} columns of borders to go;"
         f" those so far are in {path}, the same command goes on"
     )
     return None

@@ -39,15 +39,16 @@ def finish(job: Job, *, budget: float, with_movie: bool, lyapunov: bool, as_json
     int
         The exit status: 0 if all was done, 3 if not, the result being kept.
     """
-    seconds = compute(job, budget, lyapunov=lyapunov)
+    computed = compute(job, budget, lyapunov=lyapunov)
     if job.replaces:
         _remove_older_views(job.result)
     stopped = job.simulation.ending in (Ending.INTERRUPTED, Ending.OUT_OF_TIME)
     stored = load_result(job.result)
     views, complete = _draw(stored, job.result, with_movie=with_movie and not stopped)
+    complete = complete and not computed.without
     answer = json.loads(stored.attrs["summary"]) | _seed(job)
-    answer |= {"seconds": seconds, "output": str(job.result)} | views
-    _tell_of_trouble(job)
+    answer |= {"seconds": computed.seconds, "output": str(job.result)} | views
+    _tell_of_trouble(job, computed.without)
     reply(answer, run_text(answer), as_json=as_json)
     return DONE if complete and job.simulation.ending in _ENDED_WELL else STOPPED_EARLY
 
@@ -84,7 +85,7 @@ def _draw(
     return made, True
 
 
-def _tell_of_trouble(job: Job) -> None:
+def _tell_of_trouble(job: Job, without: str) -> None:
     """Say why a run has ended early, and what to do."""
     ending, time = job.simulation.ending, job.simulation.time
     if ending is Ending.FAILED:
@@ -97,4 +98,9 @@ def _tell_of_trouble(job: Job) -> None:
         notice(
             f"the run was {why} at t = {time:.6g}; everything so far is in {job.result}, go on"
             f" with: undula resume {job.result}"
+        )
+    elif without:
+        notice(
+            f"no Lyapunov exponents: {without}; the run without them is in {job.result}, later"
+            f" ones come with: undula resume {job.result} --lyapunov --until T"
         )

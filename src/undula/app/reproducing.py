@@ -12,7 +12,8 @@ from undula.app.answers import DONE, INTERRUPTED, STOPPED_EARLY, finite, notice,
 from undula.app.catalogue_tasks import Job, answers_of, carry_out, jobs_of, refuse_other_files
 from undula.app.catalogue_work import TaskWork
 from undula.app.claim_rows import row_of, rows_text, tally
-from undula.app.pool import pool
+from undula.app.own_workers import workers_that_fit
+from undula.app.pool import LostError, pool
 from undula.app.progress import swept
 from undula.app.report import write_report
 from undula.studies.items import Item, catalogue, chosen, paper_of
@@ -93,13 +94,17 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
     InputError
         There is no such item, or the folder cannot be written or is full.
     """
+    workers_that_fit(asked.workers)
     items, paper = catalogue(asked.catalogue), paper_of(asked.catalogue)
     wanted = chosen(items, asked.names)
     refuse_other_files(asked.out)
     claim_output(asked.out / "claims.json", overwrite=True)
     jobs = jobs_of(items, asked.catalogue / "inputs", asked.out / "data", quick=asked.quick)
     left = [job for job in _needed(wanted, jobs) if asked.fresh or not job.is_done()]
-    status = _carry_on(left, asked)
+    try:
+        status = _carry_on(left, asked)
+    except LostError as lost:
+        status = lost.told
     rows = {
         name: _rows(name, item, jobs, asked, wanted=name in wanted) for name, item in items.items()
     }

@@ -3,11 +3,11 @@
 import time
 from dataclasses import dataclass, field
 
-from undula.analysis.integrate import Progress, carry_on
+from undula.analysis.integrate import CUT_SHORT, STOPPED, Progress, carry_on, with_exponents
+from undula.analysis.interrupts import interruptible
 from undula.analysis.judging import Exponents
 from undula.analysis.record import dataset_of
 from undula.analysis.run import Run
-from undula.analysis.schedule import Ending
 from undula.app.answers import notice
 from undula.app.compiling import compilation_announced
 from undula.app.jobs import Job
@@ -20,11 +20,17 @@ from undula.studies.store import write_run
 SAVE_EVERY = 20.0
 #: Writing takes at most this part of the time: a long run has a large file.
 SAVING_SHARE = 0.1
-#: Runs that ended so are not looked at any longer.
-_CUT_SHORT = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
 
 
-def compute(job: Job, budget: float, *, lyapunov: bool) -> float:
+@dataclass(frozen=True)
+class Computed:
+    """Seconds that a run took, and why its Lyapunov exponents are missing if they were stopped."""
+
+    seconds: float
+    without: str
+
+
+def compute(job: Job, budget: float, *, lyapunov: bool) -> Computed:
     """Carry a run on to its end, or until Ctrl-C or the budget stops it, and store its result.
 
     Parameters
@@ -32,31 +38,31 @@ def compute(job: Job, budget: float, *, lyapunov: bool) -> float:
     job
         The run; its file is replaced, every now and then and at the end.
     budget
-        Seconds after which the run is ended with what it has.
+        Seconds after which the run is ended with what it has, or its exponents are.
     lyapunov
         Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
-
-    Returns
-    -------
-    float
-        Seconds that it took.
 
     Raises
     ------
     InputError
         The result cannot be written.
     """
-    begun = time.monotonic()
-    with meter("running") as show, compilation_announced(notice):
-        judged = carry_on(job.simulation, budget=budget, progress=_Watcher(job, show))
-    judged = judged or Run.of(job.simulation, Exponents.NEVER)
-    store(job, judged)  # exponents may take long, and Ctrl-C may end that
-    wanted = lyapunov or (judged.lyapunov is None and judged.verdict.late is not None)
-    if wanted and job.simulation.ending not in _CUT_SHORT:
-        exponents = Exponents.ALWAYS if lyapunov else Exponents.IF_IRREGULAR
-        with compilation_announced(notice):
-            store(job, Run.of(job.simulation, exponents))
-    return time.monotonic() - begun
+    begun, simulation = time.monotonic(), job.simulation
+    # Also while the result is stored: a signal may come twice.
+    with interruptible(), meter("running") as show, compilation_announced(notice):
+        watcher = _Watcher(job, show)
+        judged = carry_on(simulation, budget=budget, progress=watcher)
+        judged = judged or Run.of(simulation, Exponents.NEVER)
+        store(job, judged)  # exponents may take long, and something may end that
+        wanted = lyapunov or (judged.lyapunov is None and judged.verdict.late is not None)
+        run, stopped = judged, False
+        if wanted and simulation.ending not in CUT_SHORT:
+            exponents = Exponents.ALWAYS if lyapunov else Exponents.IF_IRREGULAR
+            left = budget - (time.monotonic() - begun)
+            run = with_exponents(simulation, exponents, budget=left, progress=watcher)
+            stopped = run.without_lyapunov in STOPPED
+            store(job, run)
+    return Computed(time.monotonic() - begun, run.without_lyapunov if stopped else "")
 
 
 def store(job: Job, run: Run) -> None:
@@ -75,6 +81,9 @@ class _Watcher:
     next_save: float = field(default_factory=lambda: SAVE_EVERY)
 
     def __call__(self, progress: Progress) -> None:
+        if progress.exponents is not None:
+            self.show(progress.exponents, f"Lyapunov exponents, {progress.exponents:.0%} done")
+            return
         self.first = self.first or progress
         settling = isinstance(self.job.wanted.time.until, str)
         self.show(part_done(progress), pace(progress, self.first, settling=settling))

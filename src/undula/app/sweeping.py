@@ -10,6 +10,7 @@ from undula.analysis.interrupts import interruptible
 from undula.analysis.schedule import Ending
 from undula.app.answers import DONE, STOPPED_EARLY, notice, reply
 from undula.app.compiling import compilation_announced
+from undula.app.own_workers import workers_that_fit
 from undula.app.pool import DiedError, LostError, Pool, pool
 from undula.app.progress import swept
 from undula.app.sweep_text import study_answer, study_text
@@ -90,6 +91,8 @@ def sweep(
         the folder cannot be written or is full.
     """
     began = time.monotonic()
+    if asked.scheduler is None:
+        workers_that_fit(asked.workers)
     store = open_study(out or Path("results") / f"{file.stem}.zarr", read_study(file, changes))
     with store.alone():
         work = SweepWork(store, retry_failed=asked.retry_failed)
