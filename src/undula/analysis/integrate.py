@@ -41,7 +41,7 @@ CUT_SHORT = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
 class Progress:
     """Where a run is: time reached and its end at the latest [T], length of the step, seconds.
 
-    While Lyapunov exponents are computed `exponents` is the part of them that is done.
+    While Lyapunov exponents are computed `exponents` says what of them, and the part that is done.
     """
 
     time: float
@@ -49,7 +49,7 @@ class Progress:
     step: float
     steps: int
     seconds: float
-    exponents: float | None = None
+    exponents: tuple[str, float] | None = None
 
 
 def integrate(
@@ -181,14 +181,14 @@ def _watch(
 ) -> Watch:
     """Return what shows how far exponents are, and ends them after Ctrl-C or the budget."""
 
-    def watch(part: float) -> None:
+    def watch(what: str, part: float) -> None:
         seconds = time.monotonic() - begun
         if interrupted():
             raise CutShortError(STOPPED[0])
         if seconds > budget:
             raise CutShortError(STOPPED[1])
         if progress is not None:
-            progress(replace(_progress(simulation, seconds), exponents=part))
+            progress(replace(_progress(simulation, seconds), exponents=(what, part)))
 
     return watch
 

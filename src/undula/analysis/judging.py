@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 
 import numpy as np
 
@@ -40,8 +41,8 @@ _STRAIGHT_HAS = (
 )
 
 
-#: Called with the part that is done of exponents, so that it can be shown, or end them.
-Watch = Callable[[float], None]
+#: Called with what is computed of exponents and the part of it that is done, to show or end it.
+Watch = Callable[[str, float], None]
 
 
 class CutShortError(Exception):
@@ -87,7 +88,7 @@ def judge(
     last: Array,
     come_to: Settled | Arrival | None,
     exponents: Exponents,
-    watch: Watch = lambda _: None,
+    watch: Watch = lambda *_: None,
 ) -> Judged:
     """Judge a run by its whole motion and by the close-up of its end.
 
@@ -177,7 +178,9 @@ def _with_exponents(
         return Judged(verdict, motion, found)
     chaotic = found.value > SIGNIFICANT * found.error
     watched = FOLDS / found.value if chaotic else WATCHED * duration
-    pairs = finite_separation(model, model.positions(last), watched, progress=watch)
+    pairs = finite_separation(
+        model, model.positions(last), watched, progress=partial(watch, "pairs of nearby runs")
+    )
     if isinstance(pairs, NotFollowed):
         return Judged(verdict, motion, found, without=pairs.reason)
     return Judged(verdict, motion, found, pairs)
@@ -206,7 +209,7 @@ def _told(
 
 
 def _of_blocks(watch: Watch) -> Callable[[int, int], None]:
-    return lambda done, total: watch(done / total)
+    return lambda done, total: watch("Lyapunov exponents", done / total)
 
 
 def _duration(judged: Judged) -> float:

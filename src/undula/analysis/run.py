@@ -97,7 +97,7 @@ class Run:
 
     @cached_property
     def _judged(self) -> Judged:
-        return self._judge(lambda _: None)
+        return self._judge(lambda *_: None)
 
     def _judge(self, watch: Watch) -> Judged:
         return judge(

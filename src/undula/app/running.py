@@ -82,7 +82,8 @@ class _Watcher:
 
     def __call__(self, progress: Progress) -> None:
         if progress.exponents is not None:
-            self.show(progress.exponents, f"Lyapunov exponents, {progress.exponents:.0%} done")
+            what, part = progress.exponents
+            self.show(part, f"{what}, {part:.0%} done")
             return
         self.first = self.first or progress
         settling = isinstance(self.job.wanted.time.until, str)
