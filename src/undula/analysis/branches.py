@@ -63,6 +63,7 @@ def follow_branch(
     enough: Callable[[Bifurcation[S]], bool] = lambda _: False,
     start: Point | None = None,
     least: float | None = None,
+    stop: Callable[[], bool] = lambda: False,
 ) -> Branch[S]:
     """Follow a branch from a solution towards a value of the parameter.
 
@@ -83,6 +84,8 @@ def follow_branch(
         without it the branch is followed towards `to`.
     least : float, optional
         How far the branch may go back beyond where it began.
+    stop : callable, optional
+        Tells whether to end with what there is.
     """
     upwards = np.sign(to - p) or 1.0
     problem = family.problem.referred_to(u)
@@ -102,7 +105,11 @@ def follow_branch(
             break
         states.append(state)
         values.append(reached.p)
-        if len(states) >= _MOST_POINTS or any(enough(bifurcation) for bifurcation in found):
+        if (
+            stop()
+            or len(states) >= _MOST_POINTS
+            or any(enough(bifurcation) for bifurcation in found)
+        ):
             break
         point, problem = reached, problem.referred_to(reached.u)
     complete = values[-1] == to

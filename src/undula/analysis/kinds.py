@@ -191,6 +191,7 @@ def follow(
     *,
     progress: Progress | None = None,
     enough: Callable[[Bifurcation[Any]], bool] = lambda _: False,
+    stop: Callable[[], bool] = lambda: False,
 ) -> Branch[Any]:
     """Follow a state along a parameter, judge it all along, and locate its bifurcations.
 
@@ -206,6 +207,8 @@ def follow(
         Called with each value that was reached.
     enough : callable, optional
         Tells of a bifurcation whether the branch may end behind it.
+    stop : callable, optional
+        Tells whether to end with what there is, which is not complete then.
 
     Raises
     ------
@@ -220,12 +223,17 @@ def follow(
     scale = abs(to - start) / _PARTS
     family = kind.family(state, parameter, scale)
     return follow_branch(
-        family, kind.unknowns(state), start, to, Steps(scale=scale), progress, enough
+        family, kind.unknowns(state), start, to, Steps(scale=scale), progress, enough, stop=stop
     )
 
 
 def follow_from_onset(
-    model: Model, kind: str, to: float, *, progress: Progress | None = None
+    model: Model,
+    kind: str,
+    to: float,
+    *,
+    progress: Progress | None = None,
+    stop: Callable[[], bool] = lambda: False,
 ) -> Branch[Any] | NotFound:
     """Follow the branch of a kind of state from the Hopf point of the straight state on.
 
@@ -241,6 +249,8 @@ def follow_from_onset(
         The force at which to end [B/L^2], beyond the Hopf force.
     progress : callable, optional
         Called with each force that was reached.
+    stop : callable, optional
+        Tells whether to end with what there is, which is not complete then.
 
     Raises
     ------
@@ -262,7 +272,9 @@ def follow_from_onset(
     state = chosen.judge(model, FORCE)(problem, first.u, first.p)
     family = chosen.family(state, FORCE, scale)
     steps = Steps(first=_AWAY, scale=scale)
-    return follow_branch(family, first.u, first.p, to, steps, progress, start=first, least=0.0)
+    return follow_branch(
+        family, first.u, first.p, to, steps, progress, start=first, least=0.0, stop=stop
+    )
 
 
 def kind_named(state: Solved) -> Kind:

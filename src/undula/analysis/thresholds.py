@@ -147,6 +147,7 @@ def threshold_curve(
     *,
     converged: bool = False,
     progress: Callable[[int, int], None] | None = None,
+    stop: Callable[[], bool] = lambda: False,
 ) -> tuple[Threshold, ...]:
     """Return a threshold at each value of a second parameter, each begun at the one before.
 
@@ -159,6 +160,8 @@ def threshold_curve(
     values : sequence of float
     progress : callable, optional
         Called with the number of values done and of all.
+    stop : callable, optional
+        Tells whether to end with the values done so far.
     """
     if parameter == FORCE:
         raise InputError(f"thresholds are values of {FORCE}; take another parameter for a curve")
@@ -169,6 +172,8 @@ def threshold_curve(
         found.append(threshold(each, kind, converged=converged, near=near))
         if progress:
             progress(done, len(models))
+        if stop():
+            break
     return tuple(found)
 
 

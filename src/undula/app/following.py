@@ -1,10 +1,12 @@
 """`undula follow`: a branch of states along a parameter, in plain JSON types and for people."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.convergence import Converged
+from undula.analysis.interrupts import interruptible
 from undula.analysis.kinds import follow, follow_from_onset, kind_of
 from undula.analysis.nearby import limit_of
 from undula.analysis.parameters import FORCE, changed, value_of
@@ -54,14 +56,18 @@ def follow_along(
     value_of(model, way.parameter)
     if kind == "straight":
         return _straight(model, way, converge=converge, title=title)
-    if way.start is None:
-        found = _from_onset(model, kind, way)
-    else:
-        found = _between(model, kind, way.parameter, way.start, way.end)
+    with interruptible() as interrupted:
+        if way.start is None:
+            found = _from_onset(model, kind, way, interrupted)
+        else:
+            found = _between(model, kind, way, way.start, interrupted)
+        early = interrupted()
     if isinstance(found, NotFound):
         return not_found(found, f"{title}: {kind}", model.units), None
-    answer = branch_answer(found, model.units, converge=converge)
-    if way.start is None:
+    answer = branch_answer(found, model.units, converge=converge and not early)
+    if early:
+        answer["status"] = "interrupted"
+    if way.start is None and len(found.values) > 1:
         answer["birth"] = "subcritical" if found.values[1] < found.values[0] else "supercritical"
     return _told(answer, f"{title}: {kind}", model.units), found
 
@@ -76,21 +82,23 @@ def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[To
     return _told(answer, f"{title}: straight state", model.units), straight
 
 
-def _from_onset(model: Model, kind: str, way: Way) -> Branch[Any] | NotFound:
+def _from_onset(
+    model: Model, kind: str, way: Way, stop: Callable[[], bool]
+) -> Branch[Any] | NotFound:
     if way.parameter != FORCE:
         raise InputError(f"an onset is a value of {FORCE}; start {way.parameter} at a number")
     with approached(f"following {kind}", 0.0, way.end) as tell:
-        return follow_from_onset(model, kind, way.end, progress=tell)
+        return follow_from_onset(model, kind, way.end, progress=tell, stop=stop)
 
 
 def _between(
-    model: Model, kind: str, parameter: str, start: float, end: float
+    model: Model, kind: str, way: Way, start: float, stop: Callable[[], bool]
 ) -> Branch[Any] | NotFound:
-    begun = kind_of(kind).find(changed(model, parameter, start))
+    begun = kind_of(kind).find(changed(model, way.parameter, start))
     if isinstance(begun, NotFound):
         return begun
-    with approached(f"following {kind}", start, end) as tell:
-        return follow(begun, parameter, end, progress=tell)
+    with approached(f"following {kind}", start, way.end) as tell:
+        return follow(begun, way.parameter, way.end, progress=tell, stop=stop)
 
 
 def branch_answer(branch: Branch[Any], units: Units, *, converge: bool) -> dict[str, Any]:

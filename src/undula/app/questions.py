@@ -104,7 +104,7 @@ def follow(
 ) -> int:
     """Follow a state along a parameter, with its stability and its bifurcations."""
     from undula.analysis.straight_branch import StraightBranch
-    from undula.app.answers import DONE, notice, reply
+    from undula.app.answers import notice, reply
     from undula.app.compiling import compilation_announced
     from undula.app.following import Way, follow_along
     from undula.studies.build import build_model
@@ -128,7 +128,7 @@ def follow(
             draw_branch(branch, stored, drawn, title=title)
     told = _with_figure(told, drawn)
     reply(told.answer, told.text, as_json=as_json)
-    return DONE
+    return _ended(told)
 
 
 def threshold(
@@ -151,7 +151,7 @@ def threshold(
 ) -> int:
     """Find the force at which a state gains or loses stability, also along a parameter."""
     from undula.analysis.parameters import FORCE
-    from undula.app.answers import DONE, notice, reply
+    from undula.app.answers import notice, reply
     from undula.app.compiling import compilation_announced
     from undula.app.thresholding import tell_threshold, tell_thresholds
     from undula.studies.build import build_model
@@ -175,10 +175,21 @@ def threshold(
         if plot is not None:
             from undula.app.drawing import draw_thresholds
 
-            draw_thresholds(name, axis, found, plot, title=title, units=model.units.names())
+            done = axis[0], axis[1][: len(found)]
+            draw_thresholds(name, done, found, plot, title=title, units=model.units.names())
     told = _with_figure(told, plot)
     reply(told.answer, told.text, as_json=as_json)
-    return DONE
+    return _ended(told)
+
+
+def _ended(told: "Told") -> int:
+    """Return the exit status, having said so if Ctrl-C ended the search before its end."""
+    from undula.app.answers import DONE, STOPPED_EARLY, notice
+
+    if told.answer["status"] != "interrupted":
+        return DONE
+    notice("interrupted; what was found until then is told, the same command begins anew")
+    return STOPPED_EARLY
 
 
 def _with_figure(told: "Told", figure: Path | None) -> "Told":

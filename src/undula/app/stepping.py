@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from undula.analysis.interrupts import interruptible
 from undula.analysis.parameters import FORCE
 from undula.analysis.schedule import Ending
 from undula.analysis.settle_and_step import Course, Step, settle_and_step
@@ -98,7 +99,8 @@ def step_along(job: Job, *, budget: float, as_json: bool) -> int:
     end = time.monotonic() + budget
     steps = [] if job.overwrite or not job.result.exists() else _taken_up(job)
     claim_output(job.result, overwrite=True)
-    status, found = _carry_on(job, steps, budget), None
+    with interruptible() as interrupted:
+        status, found = _carry_on(job, steps, budget, interrupted), None
     if status == "done" and job.with_thresholds:
         status, found = _solve(job.series.model, end)
     figure, drawn = _draw(job, steps, found or ())
@@ -119,7 +121,7 @@ def _taken_up(job: Job) -> list[Step]:
     return stored_steps(stored)
 
 
-def _carry_on(job: Job, steps: list[Step], budget: float) -> str:
+def _carry_on(job: Job, steps: list[Step], budget: float, interrupted: Callable[[], bool]) -> str:
     """Append the missing steps, as far as time and patience go; return how it ended."""
     series, stops, before = job.series, job.series.course.stops, len(steps)
     first = series.course.models(series.model)[0]
@@ -142,6 +144,8 @@ def _carry_on(job: Job, steps: list[Step], budget: float) -> str:
             ):
                 steps.append(step)
                 keep(steps)
+                if interrupted() and len(steps) < len(stops):
+                    raise KeyboardInterrupt
     except KeyboardInterrupt:
         if not steps:
             raise

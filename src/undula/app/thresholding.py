@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from undula.analysis.interrupts import interruptible
 from undula.analysis.parameters import changed
 from undula.analysis.thresholds import Threshold, threshold, threshold_curve
 from undula.app.answers import Told
@@ -32,16 +33,19 @@ def tell_thresholds(
 ) -> tuple[Told, tuple[Threshold, ...]]:
     """Find a threshold at each value of a second parameter."""
     parameter, values = along
-    with counted(f"{name} along {parameter}") as tell:
-        found = threshold_curve(model, name, parameter, values, converged=converge, progress=tell)
+    with interruptible() as interrupted, counted(f"{name} along {parameter}") as tell:
+        found = threshold_curve(
+            model, name, parameter, values, converged=converge, progress=tell, stop=interrupted
+        )
+    done = len(found) == len(values)
     # A chain of other links has other further units.
     each = [
         (value, one, changed(model, parameter, value).units)
-        for value, one in zip(values, found, strict=True)
+        for value, one in zip(values, found, strict=False)
     ]
     names = model.units.names()
     answer = {
-        "status": "done",
+        "status": "done" if done else "interrupted",
         "units": names,
         "threshold": name,
         "parameter": parameter,
