@@ -164,10 +164,9 @@ class Pool:
         """Tell whatever a client raises that has lost its scheduler."""
         try:
             yield
-        except TimeoutError:
-            raise
         except Exception as error:
-            if isinstance(error, OSError) or self._client.status != "running":
+            gone = isinstance(error, OSError) and not isinstance(error, TimeoutError)
+            if gone or self._client.status != "running":
                 raise _no_scheduler() from error
             raise
         if self._client.status != "running":
