@@ -1,6 +1,10 @@
 """Lyapunov exponents of filaments and chains: known ones, and signs of chaos."""
 
 import json
+import pickle
+import time
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,10 +15,12 @@ import pytest
 import undula as un
 from refusal import complaint
 from undula.analysis.finite_separation import Separation, finite_separation
-from undula.analysis.lyapunov import Lyapunov, lyapunov
+from undula.analysis.lyapunov import Lyapunov, NotFollowed, lyapunov
 from undula.app.cli import main
 from undula.arrays import Array
 from undula.models.model import Model
+from undula.numerics.exponents import Block, growth
+from undula.numerics.results import Status
 
 SEGMENTS = 20
 #: A true value is farther off than so many statistical errors once in 400 times.
@@ -220,3 +226,36 @@ def test_a_run_that_ends_straight_says_why_it_has_no_exponents(
     assert told["verdict"] == "straight"
     assert told["lyapunov"] is None
     assert "ask undula stability" in told["without_lyapunov"]
+
+
+def test_a_motion_that_cannot_be_followed_is_a_value_with_advice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def failed(*given: Any, **options: Any) -> Iterator[Block]:
+        for block in growth(*given, **options):
+            yield replace(block, status=Status.STEP_TOO_SHORT)
+
+    model = filament(75.0)
+    x = un.kicked(model, 0.1)
+    with monkeypatch.context() as patch:
+        patch.setattr("undula.analysis.lyapunov.growth", failed)
+        found = lyapunov(model, x, 0.1)
+        assert isinstance(found, NotFollowed)
+        assert "could not be followed beyond t = 0.0002" in found.reason
+        assert "no step succeeded" in found.reason
+        run = un.integrate(model, x, until=0.05, samples=100, lyapunov=True)
+    assert run.lyapunov is None
+    assert "no step succeeded" in run.without_lyapunov
+    assert run.summary()["without_lyapunov"] == run.without_lyapunov
+
+
+def test_exponents_of_a_run_heed_its_budget() -> None:
+    model = filament(800.0)
+    began = time.monotonic()
+    run = un.integrate(model, un.kicked(model), until=2e-3, budget=1.5, lyapunov=True)
+    # Some seconds for what the judging takes besides, on a busy machine; all would take far longer.
+    assert time.monotonic() - began < 6.0
+    assert run.without_lyapunov == "they were out of their budget of time" or run.ending.value == (
+        "out of time"
+    )
+    pickle.dumps(run)
