@@ -246,7 +246,9 @@ def ends_in_order(command: subprocess.Popen[str]) -> tuple[dict[str, Any], str]:
     return json.loads(said), told
 
 
-@pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGHUP], ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "ending", [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.slow)]
+)
 def test_a_running_command_keeps_its_result(ending: signal.Signals, tmp_path: Path) -> None:
     keys = ("model.segments=4", "load.force=200", "time.until=1000", "time.samples=200001")
     words = [word for key in keys for word in ("--set", key)]
