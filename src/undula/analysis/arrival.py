@@ -31,6 +31,7 @@ from undula.analysis.states import Spinning
 from undula.arrays import Array, ComplexArray, Nodes
 from undula.errors import InputError
 from undula.models.model import Model
+from undula.models.starts import leading_rate
 from undula.numerics.newton import newton
 from undula.numerics.system import RATES
 
@@ -160,8 +161,7 @@ class Lookout:
         if not (falls and sizes[-1] <= SMALL and part <= FALLEN):
             return None
         self.straight_waits = False  # its spectrum stays what it is
-        stiffness, drag = self.model.linearised()
-        rate = -float(np.linalg.eigvals(np.linalg.solve(drag, stiffness)).real.min())
+        rate = leading_rate(self.model)
         if rate >= 0.0:
             return None
         away = float(displacement(self._nodes(unknowns)))

@@ -9,7 +9,7 @@ import numpy as np
 
 from undula.analysis.alignment import Compare, aligned_distance, largest_distance
 from undula.analysis.decay import LinearMotion, linear_motion
-from undula.analysis.frequency import Frequency, rotation_frequency, whole_motion_frequency
+from undula.analysis.frequency import Frequency, turning_frequency, whole_motion_frequency
 from undula.analysis.observables import displacement, envelope, mean_position, transverse
 from undula.analysis.periodicity import misfit
 from undula.analysis.planes import planarity
@@ -114,15 +114,15 @@ class Evidence:
 
     @cached_property
     def frequency(self) -> Frequency | None:
-        """Frequency of the whole motion, if there is one; of a turning shape that of its turns."""
+        """Frequency of the whole motion, if any, positive; of a turning shape that of its turns."""
         if self.spins:
-            return rotation_frequency(self.time, self.rotation_angle)
+            return turning_frequency(self.time, self.rotation_angle)
         return whole_motion_frequency(self.time, self.nodes)
 
     @cached_property
     def periods(self) -> float:
         """Periods of that frequency in the window; 0 when there is none."""
-        return abs(self.frequency.value) * self.span if self.frequency else 0.0
+        return self.frequency.value * self.span if self.frequency else 0.0
 
     @cached_property
     def samples_per_period(self) -> float:
@@ -139,7 +139,7 @@ class Evidence:
     def misfit(self) -> float:
         """Share of the whole shape's in-plane motion that is not periodic; 1 without frequency."""
         found = self.frequency
-        return misfit(self.time, self.nodes, abs(found.value)) if found else 1.0
+        return misfit(self.time, self.nodes, found.value) if found else 1.0
 
     @cached_property
     def growth(self) -> LinearMotion | None:

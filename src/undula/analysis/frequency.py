@@ -20,6 +20,7 @@ __all__ = [
     "rotation_frequency",
     "shape_frequency",
     "shape_swings",
+    "turning_frequency",
     "whole_motion_frequency",
 ]
 
@@ -35,9 +36,8 @@ LONGEST_PERIOD = 3
 def whole_motion_frequency(time: Instants, nodes: Shapes) -> Frequency | None:
     """Dominant frequency of the mean position seen from the laboratory.
 
-    Taken from x + i y of the mean over the arc length. For a motion that turns, the sign is its
-    sense: positive from x to y. For a motion in a plane (the two senses equally strong) it is the
-    frequency of the oscillation, positive.
+    Taken from x + i y of the mean over the arc length. The sense of a motion that turns is told by
+    its `rotation_frequency`.
 
     Parameters
     ----------
@@ -49,11 +49,20 @@ def whole_motion_frequency(time: Instants, nodes: Shapes) -> Frequency | None:
     Returns
     -------
     Frequency or None
-        None when the filament rests, when no line stands out, or when the window holds fewer than
-        2.5 periods or a period fewer than 5 samples.
+        Positive. None when the filament rests, when no line stands out, or when the window holds
+        fewer than 2.5 periods or a period fewer than 5 samples.
     """
     signal = transverse(mean_position(nodes))[:, None]
-    return find_frequency(time, signal) if np.std(signal) > UNMOVED else None
+    return _without_sense(find_frequency(time, signal)) if np.std(signal) > UNMOVED else None
+
+
+def turning_frequency(time: Instants, rotation_angle: Instants) -> Frequency | None:
+    """Return how often a steady shape comes round: the rate of turning without its sense."""
+    return _without_sense(rotation_frequency(time, rotation_angle))
+
+
+def _without_sense(found: Frequency | None) -> Frequency | None:
+    return found and Frequency(abs(found.value), found.error)
 
 
 def shape_frequency(time: Instants, nodes: Shapes, bending_energy: Instants) -> Frequency | None:

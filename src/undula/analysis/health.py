@@ -21,8 +21,8 @@ ROUND_OFF = 1e-12
 
 
 @dataclass(frozen=True)
-class Health:
-    """Errors and effort of a run.
+class Errors:
+    """What a run got wrong, by what is known to be kept.
 
     Attributes
     ----------
@@ -33,6 +33,20 @@ class Health:
     length_error : float
         Largest relative change of length of a link at any sample; of extensible links, their
         strain.
+    """
+
+    power_balance_error: float
+    length_error: float
+
+
+@dataclass(frozen=True)
+class Health:
+    """Errors and effort of a run.
+
+    Attributes
+    ----------
+    power_balance_error, length_error : float
+        As of `Errors`.
     largest_joint_angle : float
         Largest angle between neighbouring links, the clamp's axis before the first, at any sample
         [rad]; beyond pi where joints wind up.
@@ -66,8 +80,15 @@ class Health:
     frame_changes: int
 
 
-def health_of(model: Model, motion: Motion, checkpoint: Mapping[str, Array]) -> Health:
-    """Return the health of a run of `motion` that ended at a checkpoint."""
+def errors_of(motion: Motion) -> Errors:
+    """Return what a run of `motion` got wrong."""
+    return Errors(power_balance_error(motion), length_error(motion))
+
+
+def health_of(
+    model: Model, motion: Motion, errors: Errors, checkpoint: Mapping[str, Array]
+) -> Health:
+    """Return the health of a run of `motion`, with these errors, that ended at a checkpoint."""
     real, count = checkpoint["memory_real"], checkpoint["memory_count"]
     steps = int(count[names.STEPS])
     angle = 2.0 * math.atan(math.sqrt(largest_bend(motion.nodes)))
@@ -77,8 +98,8 @@ def health_of(model: Model, motion: Motion, checkpoint: Mapping[str, Array]) -> 
         angle = float(angles.max())
         folds = not model.winds and folded(motion, angles)
     return Health(
-        power_balance_error=power_balance_error(motion),
-        length_error=length_error(motion),
+        power_balance_error=errors.power_balance_error,
+        length_error=errors.length_error,
         largest_joint_angle=angle,
         folded=folds,
         smallest_step=float(real[names.SMALLEST_STEP]) if steps else 0.0,

@@ -1,7 +1,8 @@
 """A run judged: its verdict, the motion it was made on, and Lyapunov exponents if it takes them."""
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
 
@@ -9,7 +10,9 @@ import numpy as np
 
 from undula.analysis.arrival import FALLEN, NEAR, TURNS, Arrival, motion_of
 from undula.analysis.close_up import CloseUp
+from undula.analysis.doubts import Grounds
 from undula.analysis.finite_separation import FOLDS, Separation, finite_separation
+from undula.analysis.health import Errors
 from undula.analysis.lyapunov import Lyapunov, NotFollowed, lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.regimes import (
@@ -81,10 +84,17 @@ class Judged:
     without: str = ""
 
 
+def failed(motion: Motion, cause: str) -> Judged:
+    """Return what is said of a run that failed: nothing, whatever it looks like."""
+    start = float(motion.time[0])
+    return Judged(Verdict(UNDECIDED, f"the run failed: {cause}", {}, start), motion)
+
+
 def judge(
     model: Model,
     schedule: Schedule,
     motions: tuple[Motion, CloseUp | None],
+    errors: Errors,
     last: Array,
     come_to: Settled | Arrival | None,
     exponents: Exponents,
@@ -98,6 +108,8 @@ def judge(
         What ran, and how exactly.
     motions
         The whole run, and its last periods at finer intervals if it needs them.
+    errors
+        What it got wrong.
     last
         Its last sample, shape ``(n + RATES,)``.
     come_to
@@ -108,19 +120,28 @@ def judge(
     watch
         Told how far they are.
     """
+    arrived = isinstance(come_to, Arrival)
+    grounds = Grounds(model, schedule, motions[0], errors, last[:-RATES], known_stable=arrived)
     if isinstance(come_to, Arrival):
         judged = Judged(_arrived(come_to), motion_of(come_to, model, last))
         last = last if come_to.state is None else np.append(come_to.state.unknowns, last[-RATES:])
     else:
         judged = _first(model, *motions, come_to)
-    motion = judged.motion
+    judged = _believed(grounds, judged)
+    if exponents is Exponents.NEVER:
+        return judged
     asked = exponents is Exponents.ALWAYS
-    if not asked and (judged.verdict.late is None or exponents is Exponents.NEVER):
+    if not asked and judged.verdict.late is None:
         return judged
     try:
-        return _with_exponents(model, schedule, judged, last[:-RATES], watch, parting=asked)
+        found = _with_exponents(model, schedule, judged, last[:-RATES], watch, parting=asked)
     except (InputError, CutShortError) as error:
-        return Judged(judged.verdict, motion, without=str(error))
+        return replace(judged, without=str(error))
+    return _believed(grounds, found)
+
+
+def _believed(grounds: Grounds, judged: Judged) -> Judged:
+    return replace(judged, verdict=grounds.believed(judged.verdict, judged.motion))
 
 
 def _arrived(arrival: Arrival) -> Verdict:
@@ -134,8 +155,8 @@ def _arrived(arrival: Arrival) -> Verdict:
         reason = f"{near:.2g} of itself from a spinning state, which is stable"
         limit, turning = NEAR, arrival.state.rate / (2.0 * np.pi)
         evidence |= {
-            "turns": float(TURNS),
-            "frequency": turning,
+            "turns": math.copysign(TURNS, turning),
+            "frequency": abs(turning),
             "frequency_error": arrival.state.residual * abs(turning),
         }
     told = f"{reason}: disturbances decay at {-rate:.4g}/T at least"

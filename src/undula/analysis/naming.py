@@ -54,7 +54,7 @@ def spins(late: Late) -> Name | None:
     grows = change.grows(STEADY_FACTOR, VISIBLE * STEADY_SHAPE)
     return Name(
         "spinning",
-        f"rotates steadily: over {seen.turns:.3g} turns its shape changes by"
+        f"rotates steadily: over {abs(seen.turns):.3g} turns its shape changes by"
         f" {seen.shape_change:.2g} of itself",
         min(below((seen.shape_change, STEADY_SHAPE)), abs(seen.turns) / MIN_TURNS),
         f"its shape changes more and more, by {change.last:.2g} lately" if grows else "",

@@ -107,7 +107,7 @@ def _period(run: Run) -> float | None:
     seen = run.verdict.evidence
     if "shape_period" in seen:
         return seen["shape_period"]
-    return 1.0 / abs(run.frequency.value) if run.frequency and run.frequency.value else None
+    return 1.0 / run.frequency.value if run.frequency and run.frequency.value else None
 
 
 def periodic_family(state: Periodic, parameter: str, scale: float) -> Family[Periodic]:

@@ -1,7 +1,8 @@
 """A finished run: what was computed, how well, and what it shows."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -16,8 +17,8 @@ from undula.analysis.frequency import (
     shape_frequency,
     shape_swings,
 )
-from undula.analysis.health import Health, health_of
-from undula.analysis.judging import Exponents, Judged, Watch, judge
+from undula.analysis.health import Errors, Health, errors_of, health_of
+from undula.analysis.judging import Exponents, Judged, Watch, failed, judge
 from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.motion import Motion
 from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
@@ -85,7 +86,7 @@ class Run:
             cause=simulation.cause,
             motion=Motion.of(simulation.model, simulation.times, simulation.states),
             closer=close_up(simulation),
-            settled=simulation.settled,
+            settled=_seen(simulation.settled, simulation.time),
             arrival=simulation.arrival,
             tight_from=simulation.tight_from,
             checkpoint=simulation.checkpoint(),
@@ -100,10 +101,13 @@ class Run:
         return self._judge(lambda *_: None)
 
     def _judge(self, watch: Watch) -> Judged:
+        if self.ending is Ending.FAILED:
+            return failed(self.motion, self.cause)
         return judge(
             self.model,
             self.schedule,
             (self.motion, self.closer),
+            self.errors,
             self.checkpoint["states"][-1],
             self.arrival or self.settled,
             self.exponents,
@@ -111,9 +115,14 @@ class Run:
         )
 
     @cached_property
+    def errors(self) -> Errors:
+        """What it got wrong, by what is known to be kept: a part of its health."""
+        return errors_of(self.motion)
+
+    @cached_property
     def health(self) -> Health:
         """How well it was computed."""
-        return health_of(self.model, self.motion, self.checkpoint)
+        return health_of(self.model, self.motion, self.errors, self.checkpoint)
 
     def since(self, time: float) -> Motion:
         """Return the part of the run from a time on at intervals that a motion is named from."""
@@ -167,7 +176,10 @@ class Run:
 
     @cached_property
     def frequency(self) -> Frequency | None:
-        """Frequency of the whole motion seen from the lab [cycles/T]; None for a straight one."""
+        """Frequency of the whole motion [cycles/T], positive; None for a straight one.
+
+        The sense of turning is that of the `rotation_frequency`.
+        """
         found = self.verdict.evidence
         # The verdict has looked for it in the same window.
         if "frequency" not in found or self.verdict.name == STRAIGHT:
@@ -177,8 +189,10 @@ class Run:
     @cached_property
     def rotation_frequency(self) -> Frequency | None:
         """Frequency of turning about the axis, positive from x to y [cycles/T]."""
-        if self.verdict.name == "spinning":
-            return self.frequency  # which is the same
+        whole = self.frequency
+        if self.verdict.name == "spinning" and whole is not None:
+            turns = self.verdict.evidence["turns"]
+            return replace(whole, value=math.copysign(whole.value, turns))  # it is the same
         if self.verdict.name == STRAIGHT:
             return None
         late = self.window
@@ -206,7 +220,7 @@ class Run:
         late = self.window
         shape = self.verdict.evidence.get("planarity")
         return {
-            "frequency": _value(self.frequency, sign=False),
+            "frequency": _value(self.frequency),
             "frequency_error": _error(self.frequency),
             "rotation_frequency": _value(self.rotation_frequency),
             "rotation_frequency_error": _error(self.rotation_frequency),
@@ -257,12 +271,17 @@ class Run:
     def __str__(self) -> str:
         """One line: what it ends in, at which frequency, and how well it was computed."""
         frequency = self.frequency
-        rate = f" at {abs(frequency.value):.6g} +- {frequency.error:.1g} /T" if frequency else ""
+        rate = f" at {frequency.value:.6g} +- {frequency.error:.1g} /T" if frequency else ""
         return (
             f"{self.verdict.name}{rate}, {self.ending.value} at {self.motion.time[-1]:.4g} T"
             f" (power balance to {self.health.power_balance_error:.1g},"
             f" length to {self.health.length_error:.1g}, {self.health.steps} steps)"
         )
+
+
+def _seen(settled: Settled | None, time: float) -> Settled | None:
+    """Return how a run of so many samples has settled: its last step may lie beyond them."""
+    return settled and replace(settled, since=min(settled.since, time))
 
 
 def _exponents(found: Lyapunov | None, pairs: Separation | None) -> dict[str, Any] | None:
@@ -286,10 +305,8 @@ def _range(values: Range) -> dict[str, float]:
     return {"min": values.min, "max": values.max, "mean": values.mean}
 
 
-def _value(frequency: Frequency | None, *, sign: bool = True) -> float | None:
-    if frequency is None:
-        return None
-    return float(frequency.value) if sign else abs(float(frequency.value))
+def _value(frequency: Frequency | None) -> float | None:
+    return None if frequency is None else float(frequency.value)
 
 
 def _error(frequency: Frequency | None) -> float | None:

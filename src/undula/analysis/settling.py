@@ -56,6 +56,8 @@ MOST_LOOKS = 1000
 SLOWEST_DECAY = 0.999
 #: Changes that add up to this part of their sum or more have one direction: they are no noise.
 DIRECTED = 0.7
+#: An inclination [rad] that round-off alone makes.
+UNMOVED = 1e-12
 #: A shape that moves by less than this part of the displacement in a period is on its way to rest.
 LEAST_SWING = 0.02
 
@@ -172,7 +174,10 @@ class Watch:
 
     def _at_rest(self) -> Settled | None:
         start, last = self.start, self.paces[-1].displacement
-        part = last / start if start > 0.0 else 0.0
+        if start == 0.0:
+            # It has nothing to fall from: it stays where it is, or leaves.
+            return Settled("at rest", 0.0, 0.0, None, None) if last <= UNMOVED else None
+        part = last / start
         if part > TOLERANCE_IN_RTOL * self.rtol:
             return None
         return Settled("at rest", self.paces[-1].time, part, None, None)

@@ -154,6 +154,9 @@ class Simulation:
         if noted:
             self.recent.note(self.interval / parts, int(fine[0]), states)
         status = Status(code)
+        if not np.isfinite(self.memory.differences[0]).all():
+            status = Status.NOT_FINITE
+            self.rows[-1] = self.rows[-1][np.isfinite(self.rows[-1]).all(axis=1)]
         if status not in (Status.DONE, Status.PAUSED):
             self.ending, self.cause = Ending.FAILED, status.advice
             return False

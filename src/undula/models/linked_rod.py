@@ -52,6 +52,16 @@ class LinkedRod(ABC):
         return not isinstance(self.system, FramedRod)
 
     @property
+    def extensible(self) -> bool:
+        """Whether links stretch, instead of keeping their length."""
+        return bool(self.system.extensible)
+
+    @property
+    def balances(self) -> bool:
+        """Whether the equations keep account of all energy: not where twist moments are dropped."""
+        return not isinstance(self.system, FramedRod) or self.system.transmitted != 0.0
+
+    @property
     def size(self) -> int:
         """Number of entries of a state."""
         return self.links * self.dimension

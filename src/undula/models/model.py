@@ -45,6 +45,14 @@ class Model(Protocol):
         """Whether no direction across the axis is singled out: all motions can be turned."""
 
     @property
+    def extensible(self) -> bool:
+        """Whether links stretch, instead of keeping their length."""
+
+    @property
+    def balances(self) -> bool:
+        """Whether the equations keep account of all energy: not where twist moments are dropped."""
+
+    @property
     def load(self) -> Load:
         """The follower force."""
 

@@ -80,6 +80,12 @@ def leading_mode(model: Model) -> tuple[complex, Array]:
     return complex(values[first]), vectors[:, first]
 
 
+def leading_rate(model: Model) -> float:
+    """Return the growth rate [1/T] of the leading mode: of the straight state's own links."""
+    stiffness, drag = model.linearised()
+    return -float(np.linalg.eigvals(np.linalg.solve(drag, stiffness)).real.min())
+
+
 def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
     """Return the shape with the given nodes (M + 1, 3), carried over to the model's links.
 

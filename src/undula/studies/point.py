@@ -7,11 +7,11 @@ import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from undula.analysis.health import length_error, power_balance_error
 from undula.analysis.integrate import carry_on
 from undula.analysis.last_period import last_path, last_period
 from undula.analysis.record import dataset_of
@@ -196,8 +196,7 @@ def _figures(run: Run) -> dict[str, Any]:
     record = {"verdict": verdict.name, "reason": verdict.reason, "margin": verdict.margin}
     record |= {name: told[name] for name in _SAME}
     # Of its health a study asks for no more, which saves the rest.
-    record["power_balance_error"] = power_balance_error(run.motion)
-    record["length_error"] = length_error(run.motion)
+    record |= asdict(run.errors)
     for name, (full, bounds) in _RANGES.items():
         record |= {f"{name}_{bound}": told[full][bound] for bound in bounds}
     if found is not None:
