@@ -150,9 +150,9 @@ class Grounds:
 
 
 def _back(verdict: Verdict, doubt: str) -> Verdict:
-    """Return an undecided verdict that tells what the run looks like, and why that is doubted."""
-    seen = f"{verdict.name} so far ({verdict.reason})"
-    reason = f"{verdict.reason if verdict.name == UNDECIDED else seen}, but {doubt}"
+    """Return an undecided verdict that tells what is doubted, and what the run looks like."""
+    looks = "" if verdict.name == UNDECIDED else f"{verdict.name}, "
+    reason = f"{doubt}; it looks {looks}{verdict.reason}"
     return replace(verdict, name=UNDECIDED, reason=reason, margin=0.0, longer=None, late=None)
 
 

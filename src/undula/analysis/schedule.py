@@ -12,6 +12,12 @@ from undula.models.model import Model
 from undula.numerics.schemes import NDF
 from undula.numerics.stepping import Options, options
 
+#: More samples than this are a slip of the finger; what of fewer does not fit in the memory of the
+#: machine is refused besides (`room`).
+MOST_SAMPLES = 1_000_000_000
+#: Tolerances of a step beyond which an error of a hundredth, of the motion or of a radian, would
+#: pass in each. Below the least rtol there is round-off alone.
+LEAST_RTOL, MOST_RTOL, MOST_ATOL = 1e-12, 1e-2, 1e-2
 #: First interval of a run to the settled state, as a part of the one of a run over one time unit.
 FINER = 0.25
 #: Longest step of a run to the settled state, as a part of its limit: the looks must not be too
@@ -47,10 +53,11 @@ class Schedule:
     limit : float
         Time at which a run to the settled state gives up [T].
     samples : int
-        Number of samples, ends included; a run to the settled state has up to twice as many.
+        Number of samples, ends included, from 2 to 10^9; a run to the settled state has up to twice
+        as many.
     rtol, atol : float
         Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis,
-        and absolute [rad].
+        from 1e-12 to 1e-2, and absolute [rad], above 0 and at most 1e-2.
     """
 
     until: float | Literal["settled", "solved"] = 1.0
@@ -69,12 +76,21 @@ class Schedule:
             raise InputError(
                 f"until = {self.until!r} has to be a positive number, 'settled' or 'solved'"
             )
-        for name in ("limit", "rtol", "atol"):
-            value = getattr(self, name)
-            if not (is_number(value) and value > 0.0):
-                raise InputError(f"{name} = {value!r} has to be a positive finite number")
-        if not isinstance(self.samples, int | np.integer) or self.samples < 2:
-            raise InputError(f"samples = {self.samples!r} has to be a whole number, at least 2")
+        if not (is_number(self.limit) and self.limit > 0.0):
+            raise InputError(f"limit = {self.limit!r} has to be a positive finite number")
+        if not (is_number(self.rtol) and LEAST_RTOL <= self.rtol <= MOST_RTOL):
+            raise InputError(
+                f"rtol = {self.rtol!r} has to be a number from {LEAST_RTOL:g} to {MOST_RTOL:g}"
+            )
+        if not (is_number(self.atol) and 0.0 < self.atol <= MOST_ATOL):
+            raise InputError(
+                f"atol = {self.atol!r} has to be a number above 0 and at most {MOST_ATOL:g}"
+            )
+        whole = isinstance(self.samples, int | np.integer) and not isinstance(self.samples, bool)
+        if not (whole and 2 <= self.samples <= MOST_SAMPLES):
+            raise InputError(
+                f"samples = {self.samples!r} has to be a whole number from 2 to {MOST_SAMPLES}"
+            )
 
     @property
     def open_ended(self) -> bool:

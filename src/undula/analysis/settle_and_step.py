@@ -27,6 +27,9 @@ from undula.errors import InputError, is_number
 from undula.models.model import Model
 from undula.models.starts import turned
 
+#: Each step is a run of its own.
+MOST_STEPS = 10_000
+
 
 @dataclass(frozen=True)
 class Course:
@@ -37,7 +40,7 @@ class Course:
     parameter : str
         Such as "load.force"; no whole number, see `parameters.value_of`.
     values : tuple of float
-        On the way there, one at least, in their order.
+        On the way there, from one to 10,000, in their order.
     back : bool
         Whether to go back through the same values.
     kick : float
@@ -54,6 +57,11 @@ class Course:
 
     def __post_init__(self) -> None:
         """Refuse values that make no course."""
+        if len(self.values) > MOST_STEPS:
+            raise InputError(
+                f"values are {len(self.values)} steps, each a run of its own, and {MOST_STEPS} are"
+                " the most; give fewer"
+            )
         if not (self.values and all(map(is_number, self.values))):
             raise InputError(f"values = {self.values!r} have to be finite numbers, at least one")
         if not (is_number(self.kick) and 0.0 <= self.kick <= 0.5 * math.pi):

@@ -17,10 +17,12 @@ import numpy as np
 from undula.analysis.alignment import comparison
 from undula.analysis.arrival import Arrival, Lookout
 from undula.analysis.recent import Recent, parts_of
+from undula.analysis.room import refuse_too_large
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settling import Pace, Settled, Watch
 from undula.arrays import Array, State
 from undula.errors import InputError
+from undula.models.given_shapes import numbers, refuse_misfits
 from undula.models.model import Model
 from undula.numerics import memory as names
 from undula.numerics.integrate import advance
@@ -90,11 +92,14 @@ class Simulation:
     @classmethod
     def begin(cls, model: Model, x: State, schedule: Schedule) -> Self:
         """Return the run of `model` from the state x at time 0."""
-        if np.shape(x) != (model.size,) or not np.isfinite(x).all():
+        refuse_too_large(model, schedule)
+        x = numbers(x, "the start")
+        if x.shape != (model.size,):
             raise InputError(
-                f"a start of shape {np.shape(x)} is no state of this model;"
+                f"a start of shape {x.shape} is no state of this model;"
                 f" give {model.size} finite numbers"
             )
+        refuse_misfits(model.nodes(x), extensible=model.extensible)
         x = model.admissible(x)
         unknowns, rates = model.unknowns(x), model.rates(x)
         speed = float(np.abs(model.positions(rates[:-RATES])).max())
@@ -269,6 +274,7 @@ class Simulation:
             Memory(*(np.array(saved[f"{prefix}_{name}"]) for name in Memory._fields))
             for prefix in ("mark", "memory")[::-1]
         )
+        refuse_too_large(model, schedule)
         since, rtol = saved.get("tight", (None, schedule.rtol))
         schedule = replace(schedule, rtol=float(rtol))
         simulation = cls(

@@ -217,7 +217,13 @@ class LinkedRod(ABC):
         return np.ascontiguousarray(out.T)
 
     def straight(self) -> State:
-        """Return the straight state along the axis, an equilibrium; extensible links are short."""
+        """Return the straight state along the axis, an equilibrium; extensible links are short.
+
+        Raises
+        ------
+        InputError
+            The load is as large as the stiffness of extensible links.
+        """
         return self._straight.copy()
 
     @cached_property
@@ -226,6 +232,12 @@ class LinkedRod(ABC):
         carried = np.cumsum((system.head + np.append(system.foot[1:], 0.0))[::-1])[::-1]
         x = np.zeros((self.links, self.dimension))
         x[:, -1] = np.arange(1, self.links + 1) / self.links
+        if not carried.max() < system.tensile:
+            raise InputError(
+                f"tensile_stiffness = {system.tensile:g} does not exceed the force of"
+                f" {carried.max():g} that links bear, which would push them to nothing; give a"
+                " larger tensile_stiffness, or a smaller force"
+            )
         x[:, -1] -= np.cumsum(system.link * carried / system.tensile)
         return x.ravel()
 

@@ -113,6 +113,32 @@ def of_pieces(curvature: NaturalCurvature, links: int) -> Array:
     return np.asarray((0.5 * values @ _WEIGHTS).T)
 
 
+def refuse_beyond_pi(curvature: NaturalCurvature, links: int, most: int) -> None:
+    """Refuse a curvature that turns a joint of so many links by pi or more, where it folds.
+
+    The sentence tells how many links are enough, if that is at most `most`.
+    """
+    turn = _largest_turn(curvature, links)
+    if turn < np.pi:
+        return
+    enough = links
+    while enough <= most and _largest_turn(curvature, enough) >= np.pi:
+        # As many as a joint takes that is curved like the one that turns most.
+        enough = max(enough + 1, int(enough * _largest_turn(curvature, enough) / np.pi))
+    cure = f"use {enough} segments or more" if enough <= most else "give a smaller curvature"
+    raise InputError(
+        f"natural_curvature = {reprlib.repr(curvature)} turns a joint of {links} segments by"
+        f" {turn:.3g} rad, beyond pi; {cure}"
+    )
+
+
+def _largest_turn(curvature: NaturalCurvature, links: int) -> float:
+    """Return the largest angle [rad] by which joints turn when nothing bends them."""
+    turns = np.linalg.norm(of_pieces(curvature, links)[:-1], axis=1) / links
+    turns[0] *= 0.5  # the clamp's piece ends in the middle of the first link
+    return float(turns.max())
+
+
 def _values(curvature: Callable[[Points], Any], s: Points) -> Array:
     cure = "it has to take an array of arc lengths and return finite numbers k1 and k2 for each"
     try:

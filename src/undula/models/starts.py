@@ -9,6 +9,7 @@ import numpy as np
 
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError, is_number
+from undula.models.given_shapes import fits, inclinations, numbers
 from undula.models.model import Model
 
 #: Modes of the inclination in a random kick, and the decay of their size with their number.
@@ -89,28 +90,27 @@ def leading_rate(model: Model) -> float:
 def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
     """Return the shape with the given nodes (M + 1, 3), carried over to the model's links.
 
-    The inclinations of its links are interpolated at the links of the model and, if an amplitude
-    other than 1 is asked, multiplied by it.
+    The nodes go from the base, at the origin, to the tip, in any unit: their own arc length counts
+    as L. The inclinations of their pieces are interpolated at the links of the model and, if an
+    amplitude other than 1 is asked, multiplied by it. Nodes of the model's own links are kept.
+
+    Raises
+    ------
+    InputError
+        The nodes are no finite numbers of this shape, coincide, or do not begin at the clamp; the
+        amplitude is not above 0; or the shape leaves the plane of a confined model.
     """
-    nodes = np.asarray(nodes, dtype=float)
-    if nodes.ndim != 2 or nodes.shape[0] < 2 or nodes.shape[1] != 3 or not np.isfinite(nodes).all():
+    nodes = numbers(nodes, "nodes")
+    if nodes.ndim != 2 or nodes.shape[0] < 2 or nodes.shape[1] != 3:
         raise InputError(
             f"nodes of shape {nodes.shape} are no shape; give finite values (M + 1, 3)"
         )
     if not (is_number(amplitude) and amplitude > 0.0):
         raise InputError(f"amplitude = {amplitude!r} has to be a number above 0")
-    links = np.diff(nodes, axis=0)
-    if links.shape[0] * model.dimension == model.size and amplitude == 1.0:
+    own = len(nodes) - 1 == model.links and amplitude == 1.0
+    if own and fits(nodes, extensible=model.extensible):
         return _in_plane(model, nodes)
-    tangents = links / np.linalg.norm(links, axis=1, keepdims=True)
-    across = np.linalg.norm(tangents[:, :2], axis=1)
-    size = np.arctan2(across, tangents[:, 2])
-    factor = np.divide(size, across, out=np.ones_like(size), where=across > 0.0)
-    inclination = factor[:, None] * tangents[:, :2]
-    s = np.append(0.0, (np.arange(links.shape[0]) + 0.5) / links.shape[0])
-    inclination = np.vstack([np.zeros(2), inclination])  # the clamp
-    at_links = [np.interp(_link_midpoints(model), s, inclination[:, a]) for a in range(2)]
-    return _bent(model, amplitude * np.stack(at_links, axis=-1))
+    return _bent(model, amplitude * inclinations(nodes, model.links))
 
 
 def turned(model: Model, nodes: Nodes, amplitude: float, *, seed: int = 1) -> State:

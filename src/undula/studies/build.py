@@ -5,6 +5,7 @@ from pathlib import Path
 
 from undula.analysis.schedule import Schedule
 from undula.arrays import State
+from undula.errors import InputError
 from undula.models.beads import BeadLoad
 from undula.models.chain import Chain
 from undula.models.filament import Filament
@@ -112,4 +113,7 @@ def _stored_state(model: Model, path: Path, amplitude: float) -> State:
     # Files are slow to learn to read, and most starts need none.
     from undula.studies.store import load_result
 
-    return from_state(model, load_result(path)["nodes"].values[-1], amplitude)
+    nodes = load_result(path)["nodes"]
+    if not nodes.sizes["time"]:
+        raise InputError(f"{path} holds no samples to start from; give another start.file")
+    return from_state(model, nodes.values[-1], amplitude)

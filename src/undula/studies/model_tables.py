@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, InstanceOf, PlainSerializer, model_
 
 from undula.errors import InputError
 from undula.models.chain import MOST_LINKS
-from undula.models.filament import Filament
+from undula.models.filament import FEWEST_SEGMENTS, MOST_SEGMENTS, Filament
 from undula.models.loads import TipLoad
 from undula.models.natural_curvature import CurvatureTable
 from undula.models.profiles import TableLoad
@@ -71,7 +71,7 @@ class ModelTable(Table):
     kind
         The family of models: ``"filament"`` or ``"chain"``.
     segments
-        Number of rigid links that a filament is made of, at least 4.
+        Number of rigid links that a filament is made of, from 4 to 2000.
     links
         Number of links of a chain, from 1 to 1000.
     drag_ratio
@@ -106,7 +106,12 @@ class ModelTable(Table):
     kind: Literal["filament", "chain"] = Field(
         default="filament", description="'filament' or 'chain'"
     )
-    segments: int = Field(default=40, ge=4, description="a whole number of at least 4")
+    segments: int = Field(
+        default=40,
+        ge=FEWEST_SEGMENTS,
+        le=MOST_SEGMENTS,
+        description=f"a whole number from {FEWEST_SEGMENTS} to {MOST_SEGMENTS}",
+    )
     links: int = Field(
         default=6, ge=1, le=MOST_LINKS, description=f"a whole number from 1 to {MOST_LINKS}"
     )

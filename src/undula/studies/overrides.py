@@ -8,6 +8,8 @@ from typing import Any
 
 from undula.errors import InputError
 
+#: Bytes of an input file at most: lists of a million numbers have room.
+_LARGEST = 32_000_000
 _PLACE = re.compile(r" \(at (.*)\)$")
 
 
@@ -22,10 +24,13 @@ def read_toml(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The file is missing, unreadable, not UTF-8 or not TOML; the last with line and column.
+        The file is missing, unreadable, too large, not UTF-8 or not TOML; the last with line and
+        column.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        with path.open("rb") as file:
+            content = file.read(_LARGEST + 1)
+        text = content.decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError(f"there is no input file {path}; check the name") from None
     except OSError as error:
@@ -37,6 +42,10 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise InputError(
             f"{path} is not UTF-8 text (byte {error.start}); give a TOML file saved as UTF-8"
         ) from None
+    if len(content) > _LARGEST:
+        raise InputError(
+            f"{path} is larger than any input file, beyond {_LARGEST // 10**6} MB; check the name"
+        )
     return _parse(path, text)
 
 

@@ -5,12 +5,11 @@ from decimal import Decimal
 
 import numpy as np
 
+from undula.analysis.settle_and_step import MOST_STEPS
 from undula.errors import InputError
 
 # More points than this are a slip of the finger, not a curve.
 _MOST = 1_000_000
-# Each step is a run of its own.
-_MOST_STEPS = 10_000
 
 
 def parse_values(option: str, text: str) -> tuple[float, ...]:
@@ -35,6 +34,8 @@ def parse_values(option: str, text: str) -> tuple[float, ...]:
     """
     parts = text.split(":")
     if len(parts) == 1:
+        if text.count(",") >= _MOST:
+            raise InputError(f"{option} lists more than {_MOST} numbers; give fewer")
         return tuple(_number(option, text, part) for part in text.split(","))
     if len(parts) != 3:
         raise _wrong(option, text)
@@ -122,9 +123,9 @@ def _steps_between(told: str, start: Decimal, stop: Decimal, step: Decimal) -> i
     ratio = abs((stop - start) / step)
     if ratio < 1:
         raise InputError(f"{told} has a step longer than the whole way; give a shorter one")
-    if ratio >= _MOST_STEPS + 1:
+    if ratio >= MOST_STEPS + 1:
         raise InputError(
-            f"{told} takes more than {_MOST_STEPS} steps; give a longer step or a shorter way"
+            f"{told} takes more than {MOST_STEPS} steps; give a longer step or a shorter way"
         )
     return int(ratio)
 

@@ -16,8 +16,9 @@ from typing import Any, get_args
 import numpy as np
 
 from undula.analysis.parameters import FORCE
+from undula.analysis.room import refuse_too_large
 from undula.errors import InputError
-from undula.studies.build import build_model, build_start
+from undula.studies.build import build_model, build_schedule, build_start
 from undula.studies.complaints import nearest
 from undula.studies.spec import RunInput, StudyInput, parse_input, read_tables
 from undula.studies.study_tables import MOST_POINTS, StudyTable
@@ -254,6 +255,8 @@ def _checked(draft: Study, number: int) -> RunInput:
     try:
         wanted = parse_input(draft.tables(number))
         model = build_model(wanted)
+        model.straight()  # of which extensible links may be incapable
+        refuse_too_large(model, build_schedule(wanted))
         if number == 0:
             build_start(wanted, model)  # which may lie in a file
         if model.winds and draft.policy == "neighbour":

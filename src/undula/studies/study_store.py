@@ -28,6 +28,7 @@ from undula.studies.seal import is_whole
 from undula.studies.sound_store import SoundStore
 from undula.studies.sound_study import sound_dataset
 from undula.studies.store import read_result
+from undula.studies.store_room import refuse_too_large_a_store
 from undula.studies.study import Study
 from undula.studies.study_columns import STATUS, columns_of
 from undula.studies.study_layout import FORMAT, RUNS, ZARR_FORMAT, known_arrays, lay_out
@@ -209,10 +210,11 @@ def open_study(path: Path, study: Study) -> StudyStore:
     Raises
     ------
     InputError
-        There is something else in its place, or it holds another study or was made by another
-        version; or the folder cannot be written.
+        It could not fit on the disk; there is something else in its place, or it holds another
+        study or was made by another version; or the folder cannot be written.
     """
     if not path.exists():
+        refuse_too_large_a_store(path, study)
         with folder_trouble_told(path):
             lay_out(path, study)
     metadata = _metadata_of(path)

@@ -37,7 +37,7 @@ class AxisTable(Table):
     from, to
         Its ends, both included.
     count
-        Number of its values, at least 2.
+        Number of its values, from 2 to 1000000.
     spacing
         ``"linear"``, or ``"log"`` between ends above 0.
     """
@@ -120,7 +120,7 @@ class StudyTable(Table):
         How a run begins: with the start of the input (``"same"``), with ``"random"`` shapes, or
         with what the ``"neighbour"`` before it along the last axis has come to.
     tries
-        Number of random starts at a point, at least 1.
+        Number of random starts at a point, from 1 to 1000000.
     seed
         Seed of random starts and kicks, from 0 to 2^63 - 1.
     amplitudes
@@ -139,7 +139,9 @@ class StudyTable(Table):
     keep: Keep = Field(default="verdict", description="'verdict', 'period' or 'run'")
     policy: Policy = Field(default="same", description="'same', 'random' or 'neighbour'")
     undecided: Literal["keep", "solve"] = Field(default="keep", description="'keep' or 'solve'")
-    tries: int = Field(default=1, ge=1, le=MOST_POINTS, description="a whole number of at least 1")
+    tries: int = Field(
+        default=1, ge=1, le=MOST_POINTS, description=f"a whole number from 1 to {MOST_POINTS}"
+    )
     seed: int = Field(default=1, ge=0, lt=2**63, description="a whole number from 0 to 2^63 - 1")
     amplitudes: Amplitudes = Field(
         default=(1e-3, 1.0), description="two numbers above 0 and at most pi"

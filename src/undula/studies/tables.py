@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
+from undula.analysis.schedule import LEAST_RTOL, MOST_ATOL, MOST_RTOL, MOST_SAMPLES
 from undula.studies.strict_table import OnlyWith, Table, conflict
 
 Shape = Literal["kicked", "straight", "planar", "helix", "mode", "state"]
@@ -89,20 +90,32 @@ class TimeTable(Table):
         Time at which a run to ``"settled"`` or ``"solved"`` gives up, above 0. By default 10 for a
         filament, and 10 N^2 for a chain.
     samples
-        Number of stored times, at least 2.
+        Number of stored times, from 2 to 10^9.
     rtol
         Error tolerance of a step relative to the inclination of the filament, from 1e-12 to 1e-2.
     atol
-        Absolute error tolerance of a step, radians, above 0.
+        Absolute error tolerance of a step, radians, above 0 and at most 1e-2.
     """
 
     until: Annotated[float, Field(gt=0.0)] | Literal["settled", "solved"] = Field(
         default=1.0, description="a number above 0, 'settled' or 'solved'"
     )
     limit: float = Field(default=10.0, gt=0.0, description="a number above 0")
-    samples: int = Field(default=4000, ge=2, description="a whole number of at least 2")
-    rtol: float = Field(default=1e-6, ge=1e-12, le=1e-2, description="a number from 1e-12 to 1e-2")
-    atol: float = Field(default=1e-10, gt=0.0, description="a number above 0")
+    samples: int = Field(
+        default=4000, ge=2, le=MOST_SAMPLES, description=f"a whole number from 2 to {MOST_SAMPLES}"
+    )
+    rtol: float = Field(
+        default=1e-6,
+        ge=LEAST_RTOL,
+        le=MOST_RTOL,
+        description=f"a number from {LEAST_RTOL:g} to {MOST_RTOL:g}",
+    )
+    atol: float = Field(
+        default=1e-10,
+        gt=0.0,
+        le=MOST_ATOL,
+        description=f"a number above 0 and at most {MOST_ATOL:g}",
+    )
 
     only_with: ClassVar[Mapping[str, OnlyWith]] = {
         "limit": OnlyWith("until", ("settled", "solved"))
