@@ -20,6 +20,7 @@ from undula.analysis.motion import Motion
 from undula.analysis.regimes import STRAIGHT, UNDECIDED, Verdict
 from undula.analysis.relative_equilibrium import rotating_spectrum
 from undula.analysis.schedule import Schedule
+from undula.analysis.settling import UNMOVED
 from undula.arrays import Array, Shapes
 from undula.models.model import Model
 from undula.models.starts import leading_rate
@@ -104,7 +105,8 @@ class Grounds:
 
     def _small(self, verdict: Verdict, size: float) -> Verdict | None:
         atol = self.schedule.atol
-        if verdict.name == "at rest" or size > ABOVE_ATOL * atol:
+        moves = verdict.name != "at rest" and size > UNMOVED
+        if not moves or size > ABOVE_ATOL * atol:
             return None
         return _back(
             verdict,

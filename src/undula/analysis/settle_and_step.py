@@ -93,7 +93,10 @@ class Course:
                 " model.spring = 'angle', which is the same as long as none turns beyond pi"
             )
         value_of(model, self.parameter)
-        return [changed(model, self.parameter, value) for value, _ in self.stops]
+        models = [changed(model, self.parameter, value) for value, _ in self.stops]
+        for here in models:
+            here.straight()  # of which extensible links may be incapable
+        return models
 
 
 @dataclass(frozen=True)

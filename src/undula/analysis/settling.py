@@ -125,7 +125,7 @@ class Watch:
     rtol : float
         Relative tolerance of the integration, which sets those of the verdict.
     start : float
-        Displacement at the start, as the integrator measures it.
+        Displacement at the start, as the integrator measures it; 0 of one that is straight.
     compare : callable
         How shapes are compared.
     brief : bool

@@ -33,6 +33,8 @@ from undula.numerics.system import RATES
 
 #: Steps and samples between two looks at the run: about a millisecond.
 MOST_STEPS, MOST_SAMPLES = 150, 256
+#: Inclination over the number of links that round-off makes of a straight start [rad].
+ROUND_OFF = 8.0 * float(np.finfo(float).eps)
 #: A run with this many samples a period needs no close-up.
 ENOUGH_A_PERIOD = 24.0
 #: The memory is kept so often, and at looks so many steps apart, so that the last periods can be
@@ -84,6 +86,8 @@ class Simulation:
         self.options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
         departure = self.model.departure(self.model.positions(first[:-RATES]))
+        if departure <= ROUND_OFF * self.model.links:
+            departure = 0.0
         compare = comparison(axisymmetric=self.model.axisymmetric)
         self.watch = Watch(self.schedule.rtol, departure, compare, self.schedule.until == "solved")
         self.lookout = Lookout(self.model)

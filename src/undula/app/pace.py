@@ -2,6 +2,9 @@
 
 from undula.analysis.integrate import Progress
 
+#: A pace is known after so many seconds; what takes a day or more at it says so.
+KNOWN_AFTER, FAR_TOO_LONG = 10.0, 86400.0
+
 
 def part_done(progress: Progress) -> float:
     """Return the part of the run that is done, at least; a settling run may end sooner."""
@@ -22,11 +25,35 @@ def pace(progress: Progress, first: Progress, *, settling: bool) -> str:
     """
     most = "at most " if settling else ""
     words = f"t = {progress.time:.4g} of {most}{progress.end:.4g} T, step {progress.step:.1e} T"
-    gained, spent = progress.time - first.time, progress.seconds - first.seconds
+    gained, spent = _since(first, progress)
     if gained <= 0.0 or spent <= 0.0:
         return words
     to_go = (progress.end - progress.time) * spent / gained
     return f"{words}, {gained / spent:.2g} T/s, {most}{duration(to_go)} to go"
+
+
+def far_too_long(progress: Progress, first: Progress, *, settling: bool) -> str:
+    """Return a sentence on work that will take days at its pace; none on other work.
+
+    Parameters are those of `pace`.
+    """
+    gained, spent = _since(first, progress)
+    if spent < KNOWN_AFTER:
+        return ""
+    cure = "Ctrl-C and --budget SECONDS stop it, and keep what there is"
+    if gained <= 0.0:
+        return f"the run does not get on: its steps are of {progress.step:.0e} T; {cure}"
+    to_go = (progress.end - progress.time) * spent / gained
+    if to_go < FAR_TOO_LONG:
+        return ""
+    most = "up to " if settling else ""
+    told = f"at this pace the run takes {most}{duration(to_go)} more, in steps of"
+    return f"{told} {progress.step:.0e} T; {cure}"
+
+
+def _since(first: Progress, progress: Progress) -> tuple[float, float]:
+    """Return the time that was gained since a look [T], and the seconds that it took."""
+    return progress.time - first.time, progress.seconds - first.seconds
 
 
 def duration(seconds: float) -> str:

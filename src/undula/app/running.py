@@ -12,7 +12,7 @@ from undula.app.answers import notice
 from undula.app.compiling import compilation_announced
 from undula.app.jobs import Job
 from undula.app.meter import Meter, meter
-from undula.app.pace import pace, part_done
+from undula.app.pace import far_too_long, pace, part_done
 from undula.errors import InputError
 from undula.studies.store import write_run
 
@@ -73,11 +73,12 @@ def store(job: Job, run: Run) -> None:
 
 @dataclass
 class _Watcher:
-    """Shows where a run is, and stores what it has come to every now and then."""
+    """Shows where a run is, says if it takes days, and stores it every now and then."""
 
     job: Job
     show: Meter
     first: Progress | None = None
+    warned: bool = False
     next_save: float = field(default_factory=lambda: SAVE_EVERY)
 
     def __call__(self, progress: Progress) -> None:
@@ -88,6 +89,10 @@ class _Watcher:
         self.first = self.first or progress
         settling = isinstance(self.job.wanted.time.until, str)
         self.show(part_done(progress), pace(progress, self.first, settling=settling))
+        told = "" if self.warned else far_too_long(progress, self.first, settling=settling)
+        if told:
+            self.warned = True
+            notice(told)
         if progress.seconds >= self.next_save:
             spent = self._save()
             self.next_save = progress.seconds + spent + max(SAVE_EVERY, spent / SAVING_SHARE)
