@@ -161,6 +161,18 @@ def test_a_disturbance_that_first_falls_is_waited_for_until_it_grows() -> None:
     assert 0.02 + early.longer < run.motion.time[-1]
 
 
+def test_a_held_body_that_rests_where_it_would_not_stay_is_undecided() -> None:
+    # Beyond its Hopf point, and started there: the shape solved for is exact.
+    held = un.Filament(8, un.TipLoad(100.0), natural_curvature=(1.0, 0.0))
+    rest = un.find_equilibrium(held)
+    assert isinstance(rest, un.Equilibrium)
+    assert not rest.stable
+    found = un.integrate(held, rest.x, until="settled", limit=0.05, samples=400).verdict
+    assert found.name == "undecided"
+    calm = held.with_(force=10.0)
+    assert ended(calm, calm.rest()).verdict.name == "at rest"
+
+
 def test_a_run_whose_energy_does_not_balance_is_undecided() -> None:
     # Where nothing but the tolerance moves the body.
     model = TEN.with_(force=20.0)

@@ -56,7 +56,7 @@ def test_samples_that_do_not_fit_are_refused_with_the_memory_they_take(
 
 
 def test_what_is_refused_is_so_before_anything_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(room, "memory", lambda: 10**6)
+    monkeypatch.setattr(room, "memory", lambda: 10**8)
     assert "memory" in complaint(lambda: un.integrate(TEN, un.kicked(TEN), samples=10**6))
 
 

@@ -21,7 +21,7 @@ from undula.analysis.regimes import STRAIGHT, UNDECIDED, Verdict
 from undula.analysis.relative_equilibrium import rotating_spectrum
 from undula.analysis.schedule import Schedule
 from undula.analysis.settling import UNMOVED
-from undula.arrays import Array, Shapes
+from undula.arrays import Array, Nodes, Shapes
 from undula.models.model import Model
 from undula.models.starts import leading_rate
 
@@ -39,6 +39,8 @@ PLAIN = (STRAIGHT, "spinning", "planar flapping", "at rest", "windmilling")
 #: The others are told where a step is wrong by less than this part of the motion. From a tenth more
 #: than 1e-4 on, errors have been seen to keep a spinning shape swinging for good; up to 1e-5 never.
 SUBTLE = 3e-5
+#: A body that comes to rest after it has moved by more [rad] has tried to go elsewhere.
+SLIGHT = 1e-3
 #: So many samples tell how large a motion is.
 LOOKS = 64
 #: Verdicts on states that have a spectrum to be held against.
@@ -75,7 +77,8 @@ class Grounds:
         if verdict.name == UNDECIDED and verdict.late is None:
             return verdict
         seen = self.whole if verdict.name == STRAIGHT else motion.late(verdict.window_start)
-        size = _size(self.model, seen.nodes)
+        straight = self.model.nodes(self.model.straight())
+        size = _size(self.model, seen.nodes, straight)
         return (
             self._unsound(verdict)
             or self._unstable(verdict)
@@ -129,6 +132,9 @@ class Grounds:
     def _unstable(self, verdict: Verdict) -> Verdict | None:
         if verdict.name not in RESTING or self.known_stable:
             return None
+        nodes = self.whole.nodes
+        if verdict.name != STRAIGHT and _size(self.model, nodes, nodes[-1]) > SLIGHT:
+            return None  # what grows would have been seen, and asking takes long
         if verdict.name == STRAIGHT and self.model.axisymmetric:
             rate = leading_rate(self.model)
         else:
@@ -144,7 +150,8 @@ class Grounds:
         back = _back(
             verdict, f"{told}: give a larger amplitude of the start, or a smaller atol, to see them"
         )
-        left = _size(self.model, self.whole.nodes[-1:]) if verdict.name == STRAIGHT else 0.0
+        straight, last = self.model.nodes(self.model.straight()), self.whole.nodes[-1:]
+        left = _size(self.model, last, straight) if verdict.name == STRAIGHT else 0.0
         seen = left > ABOVE_ATOL * self.schedule.atol
         # What is left grows until it is as large as motions are.
         longer = math.log(max(math.e, 1.0 / left)) / rate if seen else None
@@ -158,8 +165,8 @@ def _back(verdict: Verdict, doubt: str) -> Verdict:
     return replace(verdict, name=UNDECIDED, reason=reason, margin=0.0, longer=None, late=None)
 
 
-def _size(model: Model, nodes: Shapes) -> float:
-    """Return the largest RMS inclination to the straight state [rad] in nodes (m, N + 1, 3)."""
-    away = nodes[:: max(1, len(nodes) // LOOKS)] - model.nodes(model.straight())
+def _size(model: Model, nodes: Shapes, rest: Nodes) -> float:
+    """Return the largest RMS inclination [rad] to a shape (N + 1, 3) in nodes (m, N + 1, 3)."""
+    away = nodes[:: max(1, len(nodes) // LOOKS)] - rest
     slopes = np.diff(away, axis=1) * model.links
     return float(np.sqrt(np.max(np.sum(slopes**2, axis=(1, 2)) / model.links, initial=0.0)))

@@ -13,6 +13,8 @@ from undula.numerics.system import RATES
 #: Limits of the group of processes, as of a container or of a job of a batch system.
 _GROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 _NUMBER = 8
+#: So many bytes are there, wherever a run is begun; nearly none takes more.
+LITTLE = 100_000_000
 
 
 def refuse_too_large(model: Model, schedule: Schedule) -> None:
@@ -23,7 +25,10 @@ def refuse_too_large(model: Model, schedule: Schedule) -> None:
     InputError
         It would take more than there is.
     """
-    needed, most = needed_memory(model, schedule), memory()
+    needed = needed_memory(model, schedule)
+    if needed < LITTLE:
+        return
+    most = memory()
     if most is not None and needed > most:
         raise InputError(
             f"samples = {schedule.samples} of {model.links + 1} nodes take {told_size(needed)} of"
