@@ -175,7 +175,6 @@ class Watch:
     def _at_rest(self) -> Settled | None:
         start, last = self.start, self.paces[-1].displacement
         if start == 0.0:
-            # It has nothing to fall from: it stays where it is, or leaves.
             return Settled("at rest", 0.0, 0.0, None, None) if last <= UNMOVED else None
         part = last / start
         if part > TOLERANCE_IN_RTOL * self.rtol:

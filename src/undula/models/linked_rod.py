@@ -9,9 +9,10 @@ import numpy as np
 
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError
+from undula.models.link_lengths import admissible, straight
 from undula.models.loads import DensityLoad
 from undula.models.model import Energetics
-from undula.models.rod import FramedRod, PlanarRod, SpatialRod, WindingRod
+from undula.models.rod import FramedRod, WindingRod
 from undula.models.rod_flow import RodFlow
 from undula.models.rod_velocity import observe, rate_of_change
 from undula.numerics.banded import to_dense
@@ -91,26 +92,7 @@ class LinkedRod(ABC):
         Rigid links get theirs to round-off; extensible ones the lengths at which stretching and
         tension balance, as a start from any other would begin with a burst of axial relaxation.
         """
-        links = np.diff(np.reshape(x, (self.links, self.dimension)), axis=0, prepend=0.0)
-        tangents = links / np.linalg.norm(links, axis=1, keepdims=True)
-        stretch = np.ones(self.links)
-        if self.system.extensible:
-            stretch += self._rigid_tension(tangents) / self.system.tensile
-        return np.cumsum(stretch[:, None] * tangents * self.system.link, axis=0).ravel()
-
-    def _rigid_tension(self, tangents: Array) -> Array:
-        """Return the tensions (N,) that rigid links with these tangents would have."""
-        rigid = (PlanarRod if self.dimension == 2 else SpatialRod)(*self.system)
-        unknowns = np.zeros((self.links, self.dimension + 1))
-        unknowns[:, :-1] = np.cumsum(tangents * rigid.link, axis=0)
-        flat = unknowns.ravel()
-        rate_of_change(rigid, flat, np.zeros(flat.size + RATES))
-        before = np.vstack([np.eye(self.dimension)[-1], tangents[:-1]])
-        cosine = np.clip(np.sum(before * tangents, axis=1), -1.0, 1.0)
-        angle = np.arccos(cosine)
-        shortfall = rigid.joint * (1.0 - cosine) / np.sinc(angle / np.pi)
-        shortfall[:-1] += shortfall[1:]
-        return np.asarray(flat.reshape(unknowns.shape)[:, -1] + shortfall / rigid.link)
+        return admissible(self.system, x)
 
     def rhs(self, x: State) -> State:
         """Return dx/dt."""
@@ -228,18 +210,7 @@ class LinkedRod(ABC):
 
     @cached_property
     def _straight(self) -> State:
-        system = self.system
-        carried = np.cumsum((system.head + np.append(system.foot[1:], 0.0))[::-1])[::-1]
-        x = np.zeros((self.links, self.dimension))
-        x[:, -1] = np.arange(1, self.links + 1) / self.links
-        if not carried.max() < system.tensile:
-            raise InputError(
-                f"tensile_stiffness = {system.tensile:g} does not exceed the force of"
-                f" {carried.max():g} that links bear, which would push them to nothing; give a"
-                " larger tensile_stiffness, or a smaller force"
-            )
-        x[:, -1] -= np.cumsum(system.link * carried / system.tensile)
-        return x.ravel()
+        return straight(self.system)
 
     def rest(self) -> State:
         """Return the state in which nothing is bent: straight, unless the body is curved."""
