@@ -178,7 +178,7 @@ BAD_RUNS = [
     ("load.force=nan", "not a finite number"),
     ("load.force=inf", "not a finite number"),
     ("model.inextensibility=weak model.tensile_stiffness=-1", "a number above 0"),
-    ("model.segments=3", "at least 4"),
+    ("model.segments=3", "from 4 to 2000"),
     ("load.profile=linear load.slope=1.5", "from -1 to 1"),
     ("load.profile=point load.position=0", "above 0 and at most 1"),
     ("start.shape=state", "start.file"),
