@@ -53,7 +53,7 @@ def complaint_on(**tables: Any) -> str:
             "model",
             "segments",
             3,
-            "model.segments = 3 is out of range; model.segments takes a whole number of at least 4",
+            "model.segments = 3 is out of range; model.segments takes a whole number from 4",
         ),
         ("model", "segments", 40.0, "model.segments = 40.0 is a decimal number; model.segments"),
         ("model", "segments", True, "model.segments = true is a truth value; model.segments takes"),
@@ -68,7 +68,12 @@ def complaint_on(**tables: Any) -> str:
         ("time", "until", float("nan"), "time.until = nan is not a finite number; time.until"),
         ("time", "samples", 1, "time.samples = 1 is out of range; time.samples takes a whole"),
         ("time", "rtol", 0.1, "time.rtol = 0.1 is out of range; time.rtol takes a number from"),
-        ("time", "atol", 0.0, "time.atol = 0.0 is out of range; time.atol takes a number above 0"),
+        (
+            "time",
+            "atol",
+            0.0,
+            "time.atol = 0.0 is out of range; time.atol takes a number above 0 and at most 0.01",
+        ),
     ],
 )
 def test_a_wrong_key_or_value_is_named_with_what_would_be_right(

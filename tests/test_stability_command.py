@@ -303,7 +303,7 @@ BAD_WORDS = [
     ("--along load.slope=0:1:3", "load.slope is no number of this model"),
     ("--along model.colour=1", "model.colour is no number of this model"),
     ("--along model.segments=4:5:3", "model.segments = 4.5 has to be a whole number"),
-    ("--along model.segments=3,4", "a whole number of at least 4"),
+    ("--along model.segments=3,4", "a whole number from 4 to 2000"),
     ("--along model.drag_ratio=0.5", "drag_ratio = 0.5"),
     ("--along load.force=0:1:3", "take another parameter"),
     ("--along load.force=0:1:3 --forces 10,20", "take another parameter"),
