@@ -36,8 +36,9 @@ STILL = 1e-6
 ABOVE_ATOL = 100.0
 #: Names that rest on no small change of shape.
 PLAIN = (STRAIGHT, "spinning", "planar flapping", "at rest", "windmilling")
-#: The others are told where a step is wrong by less than this part of the motion. From a tenth more
-#: than 1e-4 on, errors have been seen to keep a spinning shape swinging for good; up to 1e-5 never.
+#: The others are told where a step is wrong by less than this part of the motion: from 1e-4 on
+#: errors have been seen to keep a spinning shape swinging for good, at 1e-6 not. In between lies
+#: 1e-5, with some room, at which few runs were tried.
 SUBTLE = 3e-5
 #: A body that comes to rest after it has moved by more [rad] has tried to go elsewhere.
 SLIGHT = 1e-3
