@@ -27,6 +27,9 @@ SECOND_DIRECTION = 1e-3
 # The lag between the paired samples, as a share of the time between zero crossings (or of the
 # window): long against the noise of neighbouring samples, short against half a swing.
 LAG_SHARE = 0.2
+# So many nodes tell one mode from another: a filament near straight moves in its longest waves, and
+# the matrix of what moves together costs the square of their number.
+NODES = 10
 # Fewer samples give the fit no remainder to judge it by.
 MIN_SAMPLES = 8
 
@@ -80,7 +83,8 @@ def linear_motion(time: Instants, nodes: Shapes) -> LinearMotion | None:
     if not moved:
         return None
     lag = max(1, int(LAG_SHARE * len(time) / (crossings + 1)))
-    logs, phases = _leading_amplitude(along, lag)
+    apart = -(-(along.shape[1] - 1) // NODES)
+    logs, phases = _leading_amplitude(np.ascontiguousarray(along[:, :0:-apart]), lag)
     clock = np.ascontiguousarray(time[: len(logs)])
     half = len(clock) // 2
     rate, *rates = (
