@@ -14,7 +14,15 @@ from undula.app.answers import notice
 from undula.app.pool import DiedError, LostError, pool
 from undula.app.progress import swept
 from undula.errors import InputError
-from undula.studies.borders_store import Column, columns_of, keep_borders, kept_columns, tables_of
+from undula.studies.borders_store import (
+    NAME,
+    Column,
+    columns_of,
+    keep_borders,
+    kept_columns,
+    tables_of,
+)
+from undula.studies.name_lock import locked
 
 #: Seconds to wait for a column before looking at Ctrl-C again.
 _PATIENCE = 0.2
@@ -46,8 +54,10 @@ def borders_of(path: Path, store: xr.Dataset) -> Borders | None:
     why = "interrupted"
     if None in columns:
         job = {"tables": tables_of(store), "parameter": parameter, "up_to": up_to}
+        busy = f"another undula solves for the borders of {path}; wait for it"
         try:
-            _solve(path, store, Borders(parameter, values, up_to, ()), job, columns)
+            with locked(path / NAME, busy):
+                _solve(path, store, Borders(parameter, values, up_to, ()), job, columns)
         except LostError as lost:
             why = lost.told
     done = [column for column in columns if column is not None]

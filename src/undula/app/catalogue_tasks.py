@@ -5,7 +5,6 @@ import hashlib
 import io
 import json
 import shlex
-import shutil
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from typing import Any
 
 from undula.analysis.sweep_points import NOT_DONE
 from undula.app.answers import DONE
+from undula.app.report_folder import ANSWER, KEY, clear, refuse_foreign
 from undula.compiled import PACKAGE
 from undula.errors import InputError
 from undula.studies.claims import Answer
@@ -36,9 +36,7 @@ _JUDGING = (
     "studies/study_measures",
     "views/reproduced",
 )
-#: File in the folder of a task that holds its answer.
-_ANSWER = "answer.json"
-#: What commands store in it that carries checksums.
+#: What commands store in the folder of a task that carries checksums.
 _FILES, _STUDY = ("run.nc", "steps.nc"), "study.zarr"
 
 
@@ -79,7 +77,7 @@ class Job:
     def kept(self) -> dict[str, Any] | None:
         """Return the record of an earlier call, if it is one of this very job and undamaged."""
         try:
-            record = unsealed_json((self.folder / _ANSWER).read_bytes())
+            record = unsealed_json((self.folder / ANSWER).read_bytes())
         except OSError:
             return None
         return record if record is not None and record["key"] == self.key else None
@@ -105,13 +103,20 @@ class Job:
             The folder cannot be written or is full.
         """
         content = sealed_json({"key": self.key, **record})
-        write_whole(self.folder / _ANSWER, content, overwrite=True)
+        write_whole(self.folder / ANSWER, content, overwrite=True)
 
     def prepare(self) -> None:
-        """Make its folder, without the files of another version of the same task."""
-        mark = self.folder / "key"
-        if self.folder.exists() and (not mark.exists() or mark.read_bytes() != self.key.encode()):
-            shutil.rmtree(self.folder)
+        """Make its folder, without the files of another version of the same task.
+
+        Raises
+        ------
+        InputError
+            There is something in it that undula has not made, or it cannot be written.
+        """
+        refuse_foreign(self.folder)
+        mark = self.folder / KEY
+        if _text(mark) != self.key:
+            clear(self.folder)
         for damaged in _damaged_files(self.folder):
             # A series would go on with it; a study mends what is damaged of it.
             damaged.unlink()
@@ -181,11 +186,26 @@ def _job(
     command = tuple(_filled(word, places) for word in shlex.split(template))
     read = [path for path in map(Path, command) if path.parent == Path(places["inputs"])]
     digest = hashlib.sha256(_computing().encode())
-    parts = [template, *(path.read_text("utf-8") for path in read)]
+    parts = [template, *map(_input_text, read)]
     for part in (*parts, *(job.key for job in needed.values())):
         digest.update(b"\0" + part.encode())
     before = frozenset(job.folder for job in needed.values())
     return Job(item, name, task, command, folder, digest.hexdigest(), before, as_in_full)
+
+
+def _input_text(path: Path) -> str:
+    text = _text(path)
+    if text is None:
+        raise InputError(f"the input {path} of a command cannot be read; mend the catalogue")
+    return text
+
+
+def _text(path: Path) -> str | None:
+    """Return the text of a file, None if there is none."""
+    try:
+        return path.read_text("utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
 
 
 @cache
@@ -265,17 +285,3 @@ def carry_out(command: tuple[str, ...], *, quietly: bool = True) -> dict[str, An
         "said": answer.get("error") or (lines[-1] if lines else ""),
         "seconds": round(time.monotonic() - began, 3),
     }
-
-
-def refuse_other_files(folder: Path) -> None:
-    """Refuse a folder that holds something else.
-
-    Raises
-    ------
-    InputError
-        It is no folder, or has files but no report.
-    """
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder} is a file; give a folder for the report")
-    if folder.exists() and any(folder.iterdir()) and not (folder / "data").is_dir():
-        raise InputError(f"{folder} holds something else than a report; give another folder")

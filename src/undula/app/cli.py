@@ -14,12 +14,15 @@ from undula.app.help import Commands
 from undula.app.options import (
     Budget,
     Changes,
+    Folder,
     Input,
     Json,
     NoMovie,
     Overwrite,
     Result,
     WithLyapunov,
+    a_file,
+    a_path,
     seconds_of,
 )
 from undula.app.questions import find, follow, stability, threshold
@@ -115,9 +118,7 @@ for _command in (stability, find, follow, threshold, sweep, status, reproduce):
 def run(
     file: Input = None,
     changes: Changes = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder of the results.", show_default=False)
-    ] = None,
+    out: Folder = None,
     overwrite: Overwrite = False,
     no_movie: NoMovie = False,
     budget: Budget = None,
@@ -128,16 +129,18 @@ def run(
 
     Writes run.nc, run.png and run.mp4 into DIR, by default results/ and the name of FILE.
     """
-    from undula.app.finishing import finish
-    from undula.app.jobs import begin
+    from undula.app.finishing import finish, views_of
+    from undula.app.jobs import begin, reads_of
+    from undula.app.outputs import claimed
     from undula.studies.spec import read_input
-    from undula.studies.whole_file import claim_output
 
     wanted, seconds = read_input(file, changes or ()), seconds_of(budget)
     result = (out or Path("results") / (file.stem if file else "run")) / "run.nc"
-    claim_output(result, overwrite=overwrite)
-    job = begin(wanted, result)
-    return finish(job, budget=seconds, with_movie=not no_movie, lyapunov=lyapunov, as_json=as_json)
+    views = views_of(result, with_movie=not no_movie)
+    reads = reads_of(file, wanted)
+    with claimed(result, *views, renewed=views, overwrite=overwrite, reads=reads) as claim:
+        job = begin(wanted, result)
+        return finish(job, claim, views, budget=seconds, lyapunov=lyapunov, as_json=as_json)
 
 
 @app.command()
@@ -149,31 +152,42 @@ def resume(
             metavar="T", help="Time at which to end [T]; not needed by a run stopped early."
         ),
     ] = None,
+    overwrite: Annotated[
+        bool,
+        typer.Option("--overwrite", help="Replace a figure or movie that is not undula's own."),
+    ] = False,
     no_movie: NoMovie = False,
     budget: Budget = None,
     lyapunov: WithLyapunov = False,
     as_json: Json = False,
 ) -> int:
     """Go on where a run ended, in the same file; figure and movie are drawn anew."""
-    from undula.app.finishing import finish
+    from undula.app.finishing import finish, views_of
     from undula.app.jobs import take_up
-    from undula.studies.whole_file import claim_output
+    from undula.app.outputs import claimed
+    from undula.studies.store import load_result
 
     seconds = seconds_of(budget)
-    job = take_up(result, until)
-    claim_output(result, overwrite=True)
-    return finish(job, budget=seconds, with_movie=not no_movie, lyapunov=lyapunov, as_json=as_json)
+    load_result(result)  # what is none is told before anything is made or locked
+    views = views_of(result, with_movie=not no_movie)
+    with claimed(result, *views, renewed=views, continued=[result], overwrite=overwrite) as claim:
+        job = take_up(result, until)
+        return finish(job, claim, views, budget=seconds, lyapunov=lyapunov, as_json=as_json)
 
 
 @app.command()
 def plot(
     result: Annotated[
-        Path, typer.Argument(metavar="RESULT", help="What undula run or undula sweep wrote.")
+        Path,
+        typer.Argument(
+            metavar="RESULT", parser=a_path, help="What undula run or undula sweep wrote."
+        ),
     ],
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
+            parser=a_file,
             help="Figure: .png, .pdf or .svg; .html for a page of a study.",
             show_default=False,
         ),
@@ -198,13 +212,16 @@ def plot(
         return plot_study(result, Asked(view, out, at or (), borders, overwrite), as_json=as_json)
     from undula.app.answers import DONE, reply
     from undula.app.drawing import draw_figure, figure_path
+    from undula.app.outputs import claimed
     from undula.studies.store import load_result
 
     for option, given in (("--view", view != "diagram"), ("--at", at), ("--borders", borders)):
         if given:
             raise InputError(f"{option} is about studies, and {result} is none; leave it out")
     path = figure_path(result, out)
-    draw_figure(load_result(result), path, overwrite=overwrite or out is None)
+    stored, renewed = load_result(result), [path] if out is None else []
+    with claimed(path, renewed=renewed, overwrite=overwrite, reads=[result]) as claim:
+        draw_figure(stored, path, claim)
     reply({"status": "done", "figure": str(path)}, str(path), as_json=as_json)
     return DONE
 
@@ -214,7 +231,7 @@ def movie(
     result: Result,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Movie: .mp4.", show_default=False),
+        typer.Option(metavar="FILE", parser=a_file, help="Movie: .mp4.", show_default=False),
     ] = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
@@ -222,10 +239,13 @@ def movie(
     """Make the movie of a stored run, by default beside it as .mp4."""
     from undula.app.answers import DONE, reply
     from undula.app.drawing import draw_movie, movie_path
+    from undula.app.outputs import claimed
     from undula.studies.store import load_result
 
     path = movie_path(result, out)
-    draw_movie(load_result(result), path, overwrite=overwrite or out is None)
+    stored, renewed = load_result(result), [path] if out is None else []
+    with claimed(path, renewed=renewed, overwrite=overwrite, reads=[result]) as claim:
+        draw_movie(stored, path, claim)
     reply({"status": "done", "movie": str(path)}, str(path), as_json=as_json)
     return DONE
 
@@ -244,9 +264,7 @@ def step(
     ] = False,
     kick: Annotated[float, typer.Option(help="Largest turn of a link before a step, rad.")] = 1e-3,
     seed: Annotated[int, typer.Option(help="Seed of the random kicks.")] = 1,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder of the results.", show_default=False)
-    ] = None,
+    out: Folder = None,
     overwrite: Overwrite = False,
     budget: Budget = None,
     as_json: Json = False,
@@ -256,12 +274,14 @@ def step(
     Writes steps.nc and steps.png into DIR, by default results/ and the name of FILE. A series that
     was stopped early goes on with the same command.
     """
+    from undula.app.jobs import reads_of
     from undula.app.stepping import Job, plan, step_along
 
     seconds = seconds_of(budget)
     series = plan(file, changes or (), along, back=down, kick=kick, seed=seed)
     result = (out or Path("results") / (file.stem if file else "step")) / "steps.nc"
-    job = Job(series, result, overwrite=overwrite, with_thresholds=thresholds)
+    reads = reads_of(file, series.wanted)
+    job = Job(series, result, reads, overwrite=overwrite, with_thresholds=thresholds)
     return step_along(job, budget=seconds, as_json=as_json)
 
 

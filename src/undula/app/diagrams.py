@@ -16,11 +16,11 @@ from undula.analysis.sweep_points import TRY, chosen, varied
 from undula.app.answers import DONE, STOPPED_EARLY, reply
 from undula.app.bordering import borders_of
 from undula.app.diagram_text import diagram_answer, diagram_text
-from undula.app.drawing import FORMATS, check_figure_name, save_figure
+from undula.app.drawing import FORMATS, beside, check_figure_name, save_figure
+from undula.app.outputs import Claim, claimed
 from undula.errors import InputError
 from undula.studies.ranges import parse_axis
 from undula.studies.study_store import load_study
-from undula.studies.whole_file import claim_output, write_whole
 from undula.views import basin_diagram, gallery, mean_paths, phase_diagram, phase_page
 
 #: What of a study can be drawn.
@@ -49,14 +49,14 @@ def plot_study(path: Path, asked: Asked, *, as_json: bool) -> int:
     """
     figure = _figure_path(path, asked)
     store = _part(path, asked, with_shapes=figure.suffix == _PAGE or asked.view in VIEWS[1:3])
-    replaces = asked.overwrite or asked.out is None
-    claim_output(figure, overwrite=replaces)
-    found = borders_of(path, store) if asked.borders else None
-    if asked.borders and found is None:
-        reply({"status": "interrupted", "store": str(path)}, "", as_json=as_json)
-        return STOPPED_EARLY
-    wrong = disagreements(store, found) if found else ()
-    _draw(store, asked.view, found, wrong, figure, overwrite=replaces)
+    renewed = [figure] if asked.out is None else []
+    with claimed(figure, renewed=renewed, overwrite=asked.overwrite) as claim:
+        found = borders_of(path, store) if asked.borders else None
+        if asked.borders and found is None:
+            reply({"status": "interrupted", "store": str(path)}, "", as_json=as_json)
+            return STOPPED_EARLY
+        wrong = disagreements(store, found) if found else ()
+        _draw(store, asked.view, found, wrong, figure, claim)
     shares = basins(store) if store.sizes[TRY] > 1 else None
     answer = diagram_answer(store, found, wrong, shares) | {"figure": str(figure)}
     reply(answer, diagram_text(answer), as_json=as_json)
@@ -68,8 +68,7 @@ def _figure_path(path: Path, asked: Asked) -> Path:
     if asked.view not in VIEWS:
         raise InputError(f"--view {asked.view} is not known; take {', '.join(VIEWS)}")
     if asked.out is None:
-        name = path.stem if asked.view == VIEWS[0] else f"{path.stem}-{asked.view}"
-        return path.with_name(name + FORMATS[0])
+        return beside(path, FORMATS[0], "" if asked.view == VIEWS[0] else f"-{asked.view}")
     if asked.out.suffix.lower() != _PAGE:
         check_figure_name("--out", asked.out)
     elif asked.view != VIEWS[0]:
@@ -103,14 +102,13 @@ def _draw(
     found: Borders | None,
     wrong: Sequence[Disagreement],
     figure: Path,
-    *,
-    overwrite: bool,
+    claim: Claim,
 ) -> None:
     lines = _lines(found) if found and FORCE in varied(store) else []
     notes = [(one.at, one.sentence) for one in wrong if not one.near]
     if figure.suffix.lower() == _PAGE:
         page = phase_page(store, lines, contradicting=notes)
-        write_whole(figure, page.encode(), overwrite=overwrite)
+        claim.write(figure, page.encode())
         return
     if view == "gallery":
         drawn: Any = gallery(store)
@@ -120,7 +118,7 @@ def _draw(
         drawn = basin_diagram(basins(store), lines, title=str(store.attrs.get("load", "")))
     else:
         drawn = phase_diagram(store, lines, contradicting=notes)
-    save_figure(drawn, figure, overwrite=overwrite)
+    save_figure(drawn, figure, claim)
 
 
 def _lines(found: Borders) -> list[tuple[str, Any, Any]]:

@@ -5,6 +5,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 
@@ -12,9 +13,10 @@ from undula.analysis.branch_records import Branch
 from undula.analysis.linear_results import GrowthCurve
 from undula.analysis.straight_branch import StraightBranch
 from undula.analysis.thresholds import Threshold
+from undula.app.marks import METADATA, NAME
 from undula.app.meter import meter
+from undula.app.outputs import Claim
 from undula.errors import InputError
-from undula.studies.whole_file import claim_output, write_whole
 from undula.views import (
     bifurcation_diagram,
     growth_figure,
@@ -27,6 +29,20 @@ FORMATS = (".png", ".pdf", ".svg")
 _DOTS_PER_INCH = 150
 
 
+def beside(path: Path, ending: str, addition: str = "") -> Path:
+    """Return the name beside a file or folder that has another ending.
+
+    Raises
+    ------
+    InputError
+        There is nothing beside it.
+    """
+    named = path if path.name not in ("", "..") else path.resolve()
+    if not named.name:
+        raise InputError(f"there is nothing beside {path}; give another --out")
+    return named.with_name(f"{named.stem}{addition}{ending}")
+
+
 def figure_path(result: Path, out: Path | None) -> Path:
     """Return where the figure of a result goes.
 
@@ -35,7 +51,7 @@ def figure_path(result: Path, out: Path | None) -> Path:
     InputError
         The ending of `out` is none that a figure can have.
     """
-    path = out or result.with_suffix(FORMATS[0])
+    path = out or beside(result, FORMATS[0])
     check_figure_name("--out", path)
     return path
 
@@ -63,13 +79,13 @@ def movie_path(result: Path, out: Path | None) -> Path:
     InputError
         `out` does not end in .mp4.
     """
-    path = out or result.with_suffix(".mp4")
+    path = out or beside(result, ".mp4")
     if path.suffix.lower() != ".mp4":
         raise InputError(f"--out {path} does not end like a movie; give a name that ends in .mp4")
     return path
 
 
-def draw_figure(stored: xr.Dataset, path: Path, *, overwrite: bool) -> None:
+def draw_figure(stored: xr.Dataset, path: Path, claim: Claim) -> None:
     """Draw the portrait of a stored run into a file.
 
     Raises
@@ -77,25 +93,29 @@ def draw_figure(stored: xr.Dataset, path: Path, *, overwrite: bool) -> None:
     InputError
         The run has too few samples, or the file cannot be written.
     """
-    claim_output(path, overwrite=overwrite)
-    save_figure(portrait(stored), path, overwrite=overwrite)
+    save_figure(portrait(stored), path, claim)
 
 
-def save_figure(figure: Any, path: Path, *, overwrite: bool) -> None:
+def save_figure(figure: Any, path: Path, claim: Claim) -> None:
     """Write a matplotlib figure, whole or not at all.
 
     Raises
     ------
     InputError
-        The file exists and is not to be replaced, or cannot be written.
+        There is something that is not to be replaced, or the file cannot be written.
     """
-    write_whole(path, figure_bytes(figure, path.suffix), overwrite=overwrite)
+    claim.write(path, figure_bytes(figure, path.suffix))
 
 
 def figure_bytes(figure: Any, ending: str) -> bytes:
-    """Return the content of a file of a matplotlib figure, by its ending, as ".png"."""
-    image = BytesIO()
-    figure.savefig(image, format=ending[1:].lower(), dpi=_DOTS_PER_INCH)
+    """Return the content of a file of a matplotlib figure, by its ending, as ".png".
+
+    It carries our mark, and no trace of when it was made.
+    """
+    image, kind = BytesIO(), ending[1:].lower()
+    # Names of parts of an SVG are taken from this word, not from chance.
+    with mpl.rc_context({"svg.hashsalt": NAME}):
+        figure.savefig(image, format=kind, dpi=_DOTS_PER_INCH, metadata=dict(METADATA[kind]))
     return image.getvalue()
 
 
@@ -115,7 +135,7 @@ def check_straight(parameter: str) -> None:
 
 
 def draw_straight(
-    branch: StraightBranch, path: Path, *, title: str, units: Mapping[str, str]
+    branch: StraightBranch, path: Path, claim: Claim, *, title: str, units: Mapping[str, str]
 ) -> None:
     """Draw growth rate and frequency of the straight state against the force into a file.
 
@@ -127,10 +147,12 @@ def draw_straight(
     growth = GrowthCurve(
         branch.values, branch.rates, branch.frequencies, np.zeros_like(branch.rates), "spectral"
     )
-    save_figure(growth_figure(growth, title=title, units=units), path, overwrite=True)
+    save_figure(growth_figure(growth, title=title, units=units), path, claim)
 
 
-def draw_branch(branch: Branch[Any], runs: Sequence[xr.Dataset], path: Path, *, title: str) -> None:
+def draw_branch(
+    branch: Branch[Any], runs: Sequence[xr.Dataset], path: Path, claim: Claim, *, title: str
+) -> None:
     """Draw a branch of states, with stored runs as dots, into a file.
 
     Raises
@@ -138,7 +160,7 @@ def draw_branch(branch: Branch[Any], runs: Sequence[xr.Dataset], path: Path, *, 
     InputError
         The file cannot be written.
     """
-    save_figure(bifurcation_diagram([branch], title=title, runs=runs), path, overwrite=True)
+    save_figure(bifurcation_diagram([branch], title=title, runs=runs), path, claim)
 
 
 def draw_thresholds(
@@ -146,6 +168,7 @@ def draw_thresholds(
     along: tuple[str, Sequence[float]],
     found: Sequence[Threshold],
     path: Path,
+    claim: Claim,
     *,
     title: str,
     units: Mapping[str, str],
@@ -164,18 +187,19 @@ def draw_thresholds(
     )
     curves = [(name, values, forces, errors)]
     figure = threshold_curves(curves, parameter=along[0], title=title, units=units)
-    save_figure(figure, path, overwrite=True)
+    save_figure(figure, path, claim)
 
 
-def draw_movie(stored: xr.Dataset, path: Path, *, overwrite: bool) -> None:
+def draw_movie(stored: xr.Dataset, path: Path, claim: Claim) -> None:
     """Make the movie of a stored run.
 
     Raises
     ------
     InputError
-        The run has too few samples, the file cannot be written, or the encoder fails.
+        The run has too few samples, there is something that is not to be replaced, the file cannot
+        be written, or the encoder fails.
     """
-    claim_output(path, overwrite=overwrite)
+    claim.check(path)
     try:
         with meter("drawing the movie") as show:
             movie(

@@ -1,6 +1,7 @@
 """The last part of a run: its figure and movie, its answer and its exit status."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,25 +11,42 @@ from undula.analysis.schedule import Ending
 from undula.app.answers import DONE, STOPPED_EARLY, notice, reply
 from undula.app.drawing import draw_figure, draw_movie, figure_path, movie_path
 from undula.app.jobs import Job
+from undula.app.outputs import Claim, discard
 from undula.app.run_text import run_text
 from undula.app.running import compute
 from undula.errors import InputError
 from undula.studies.store import load_result
 
+_VIEWS = (("figure", draw_figure), ("movie", draw_movie))
 _ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.SOLVED, Ending.IRREGULAR, Ending.LIMIT)
 
 
-def finish(job: Job, *, budget: float, with_movie: bool, lyapunov: bool, as_json: bool) -> int:
+def views_of(result: Path, *, with_movie: bool = True) -> list[Path]:
+    """Return the names of the figure of a result and of its movie, which are made beside it."""
+    return [figure_path(result, None), *([movie_path(result, None)] if with_movie else [])]
+
+
+def finish(
+    job: Job,
+    claim: Claim,
+    views: Sequence[Path],
+    *,
+    budget: float,
+    lyapunov: bool,
+    as_json: bool,
+) -> int:
     """Carry a run to its end, draw it, and answer.
 
     Parameters
     ----------
     job
         The run.
+    claim
+        On its file and its views.
+    views
+        Names of those to be made; a run that is stopped early has no movie.
     budget
         Seconds after which it is ended with what it has.
-    with_movie
-        Whether to make a movie of a run that has come to its end.
     lyapunov
         Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
     as_json
@@ -40,14 +58,14 @@ def finish(job: Job, *, budget: float, with_movie: bool, lyapunov: bool, as_json
         The exit status: 0 if all was done, 3 if not, the result being kept.
     """
     computed = compute(job, budget, lyapunov=lyapunov)
-    if job.replaces:
-        _remove_older_views(job.result)
+    for path in views_of(job.result):
+        discard(path)  # of a result that this one has replaced: they would mislead
     stopped = job.simulation.ending in (Ending.INTERRUPTED, Ending.OUT_OF_TIME)
     stored = load_result(job.result)
-    views, complete = _draw(stored, job.result, with_movie=with_movie and not stopped)
+    made, complete = _draw(stored, job.result, claim, views[:1] if stopped else views)
     complete = complete and not computed.without
     answer = json.loads(stored.attrs["summary"]) | _seed(job)
-    answer |= {"seconds": computed.seconds, "output": str(job.result)} | views
+    answer |= {"seconds": computed.seconds, "output": str(job.result)} | made
     _tell_of_trouble(job, computed.without)
     reply(answer, run_text(answer), as_json=as_json)
     return DONE if complete and job.simulation.ending in _ENDED_WELL else STOPPED_EARLY
@@ -58,23 +76,15 @@ def _seed(job: Job) -> dict[str, Any]:
     return {"seed": start["seed"]} if "seed" in start else {}
 
 
-def _remove_older_views(result: Path) -> None:
-    """Remove figure and movie of the result that this one has replaced: they would mislead."""
-    for path in (figure_path(result, None), movie_path(result, None)):
-        path.unlink(missing_ok=True)
-
-
 def _draw(
-    stored: xr.Dataset, result: Path, *, with_movie: bool
+    stored: xr.Dataset, result: Path, claim: Claim, views: Sequence[Path]
 ) -> tuple[dict[str, str | None], bool]:
     """Draw what can be drawn; return the names by kind, and whether nothing failed."""
     made: dict[str, str | None] = {"figure": None, "movie": None}
-    jobs = [("figure", draw_figure, figure_path(result, None))]
-    if with_movie:
-        jobs.append(("movie", draw_movie, movie_path(result, None)))
     try:
-        for kind, draw, path in jobs:
-            draw(stored, path, overwrite=True)
+        # A run without a movie has the figure alone.
+        for (kind, draw), path in zip(_VIEWS, views, strict=False):
+            draw(stored, path, claim)
             made[kind] = str(path)
     except InputError as error:
         notice(f"{error}; the result is stored in {result}")

@@ -13,6 +13,7 @@ from undula.analysis.schedule import Ending
 from undula.analysis.simulation import Simulation
 from undula.errors import InputError
 from undula.studies.build import build_model, build_schedule, build_start
+from undula.studies.file_names import file_name
 from undula.studies.spec import RunInput, parse_input
 from undula.studies.store import load_checkpoint, load_result
 
@@ -24,15 +25,23 @@ _STOPPED_EARLY = tuple(
 
 @dataclass(frozen=True)
 class Job:
-    """A simulation, the complete input that makes it, and the file that keeps its result.
-
-    `replaces` tells whether the file holds an earlier result that this one takes the place of.
-    """
+    """A simulation, the complete input that makes it, and the file that keeps its result."""
 
     wanted: RunInput
     simulation: Simulation
     result: Path
-    replaces: bool
+
+
+def reads_of(file: Path | None, wanted: RunInput) -> list[Path]:
+    """Return the files that an input is read from: its own, and the one that its start names.
+
+    Raises
+    ------
+    InputError
+        No file can be called so.
+    """
+    named = wanted.start.file
+    return [*([] if file is None else [file]), *([] if named is None else [file_name(named)])]
 
 
 def begin(wanted: RunInput, result: Path) -> Job:
@@ -46,7 +55,7 @@ def begin(wanted: RunInput, result: Path) -> Job:
     model = build_model(wanted)
     start = build_start(wanted, model)
     simulation = Simulation.begin(model, start, build_schedule(wanted))
-    return Job(wanted, simulation, result, replaces=result.exists())
+    return Job(wanted, simulation, result)
 
 
 def take_up(result: Path, until: float | None) -> Job:
@@ -71,7 +80,7 @@ def take_up(result: Path, until: float | None) -> Job:
     if until is not None:
         wanted = _until(wanted, until, float(saved["interval"]))
     simulation = Simulation.resume(build_model(wanted), build_schedule(wanted), saved)
-    return Job(wanted, simulation, result, replaces=True)
+    return Job(wanted, simulation, result)
 
 
 def _stored_input(result: Path, stored: xr.Dataset) -> RunInput:

@@ -1,22 +1,60 @@
 """Arguments and options that several commands share."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from undula.errors import InputError
+from undula.studies.file_names import any_name, file_name
 
-Result = Annotated[Path, typer.Argument(metavar="RESULT.nc", help="A file that undula run wrote.")]
+
+def a_file(text: str) -> Path:
+    """Parse a word of the command line that names a file; every such word goes through here.
+
+    Raises
+    ------
+    typer.BadParameter
+        No file can be called so.
+    """
+    return _parsed(file_name, text)
+
+
+def a_path(text: str) -> Path:
+    """Parse a word of the command line that names a file or a folder, as `a_file` does."""
+    return _parsed(any_name, text)
+
+
+def _parsed(read: Callable[[str], Path], text: str) -> Path:
+    try:
+        return read(text)
+    except InputError as error:
+        raise typer.BadParameter(str(error)) from None
+
+
+Result = Annotated[
+    Path,
+    typer.Argument(metavar="RESULT.nc", parser=a_file, help="A file that undula run wrote."),
+]
 Input = Annotated[
-    Path | None, typer.Argument(metavar="[FILE.toml]", help="Input; without it, the defaults.")
+    Path | None,
+    typer.Argument(metavar="[FILE.toml]", parser=a_file, help="Input; without it, the defaults."),
+]
+Folder = Annotated[
+    Path | None,
+    typer.Option(
+        "--out", metavar="DIR", parser=a_path, help="Folder of the results.", show_default=False
+    ),
 ]
 Changes = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key, as in load.force=80."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Answer with exactly one JSON object.")]
-Plot = Annotated[Path | None, typer.Option(metavar="FILE", help="Figure: .png, .pdf or .svg.")]
+Plot = Annotated[
+    Path | None, typer.Option(metavar="FILE", parser=a_file, help="Figure: .png, .pdf or .svg.")
+]
 Converge = Annotated[
     bool, typer.Option("--converge", help="Extrapolate to many links, with the error.")
 ]

@@ -1,17 +1,19 @@
 """The commands that answer by solving instead of running: stability, find, follow, threshold."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from undula.app.options import Changes, Converge, Input, Json, Overwrite, Plot
+from undula.app.options import Changes, Converge, Input, Json, Overwrite, Plot, a_file
 from undula.errors import InputError
 
 if TYPE_CHECKING:
     from undula.app.answers import Told
+    from undula.app.outputs import Claim
 
 
 def stability(
@@ -38,7 +40,6 @@ def stability(
     With --forces the leading eigenvalue at each force, with --along thresholds along a parameter,
     with both a map.
     """
-    from undula.app.answers import DONE, reply
     from undula.app.stability import Question, ask
     from undula.studies.ranges import parse_axis, parse_values
     from undula.studies.spec import read_stability_input
@@ -49,10 +50,15 @@ def stability(
         forces=None if forces is None else parse_values("--forces", forces),
         along=None if along is None else parse_axis("--along", along),
     )
-    _claim_figure(plot, overwrite=overwrite)
-    told = ask(question, plot)
-    reply(told.answer, told.text, as_json=as_json)
-    return DONE
+    with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
+        told, draw = ask(question)
+
+        def save(path: Path) -> None:
+            from undula.app.drawing import save_figure
+
+            save_figure(draw(), path, claim)
+
+        return _reply(told, plot, save, as_json=as_json)
 
 
 def find(
@@ -97,14 +103,16 @@ def follow(
     plot: Plot = None,
     runs: Annotated[
         list[Path] | None,
-        typer.Option("--run", metavar="RESULT.nc", help="A stored run to draw as a dot."),
+        typer.Option(
+            "--run", metavar="RESULT.nc", parser=a_file, help="A stored run to draw as a dot."
+        ),
     ] = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> int:
     """Follow a state along a parameter, with its stability and its bifurcations."""
     from undula.analysis.straight_branch import StraightBranch
-    from undula.app.answers import notice, reply
+    from undula.app.answers import notice
     from undula.app.compiling import compilation_announced
     from undula.app.following import Way, follow_along
     from undula.studies.build import build_model
@@ -113,22 +121,21 @@ def follow(
 
     wanted = read_model_input(file, changes or ())
     way = Way(*parse_way("--along", along))
-    _claim_figure(plot, overwrite=overwrite)
-    stored = _runs_to_draw(kind, way.parameter, plot, runs or ())
-    model, title = build_model(wanted), wanted.tell({way.parameter})
-    with compilation_announced(notice):
-        told, branch = follow_along(model, kind, way, converge=converge, title=title)
-    drawn = None if branch is None else plot
-    if drawn is not None:
-        from undula.app.drawing import draw_branch, draw_straight
+    with _figure_claimed(plot, overwrite=overwrite, reads=[file, *(runs or ())]) as claim:
+        stored = _runs_to_draw(kind, way.parameter, plot, runs or ())
+        model, title = build_model(wanted), wanted.tell({way.parameter})
+        with compilation_announced(notice):
+            told, branch = follow_along(model, kind, way, converge=converge, title=title)
 
-        if isinstance(branch, StraightBranch):
-            draw_straight(branch, drawn, title=title, units=model.units.names())
-        elif branch is not None:
-            draw_branch(branch, stored, drawn, title=title)
-    told = _with_figure(told, drawn)
-    reply(told.answer, told.text, as_json=as_json)
-    return _ended(told)
+        def save(path: Path) -> None:
+            from undula.app.drawing import draw_branch, draw_straight
+
+            if isinstance(branch, StraightBranch):
+                draw_straight(branch, path, claim, title=title, units=model.units.names())
+            elif branch is not None:
+                draw_branch(branch, stored, path, claim, title=title)
+
+        return _reply(told, None if branch is None else plot, save, as_json=as_json)
 
 
 def threshold(
@@ -151,7 +158,7 @@ def threshold(
 ) -> int:
     """Find the force at which a state gains or loses stability, also along a parameter."""
     from undula.analysis.parameters import FORCE
-    from undula.app.answers import notice, reply
+    from undula.app.answers import notice
     from undula.app.compiling import compilation_announced
     from undula.app.thresholding import tell_threshold, tell_thresholds
     from undula.studies.build import build_model
@@ -166,20 +173,46 @@ def threshold(
         title = wanted.tell({FORCE})
         with compilation_announced(notice):
             told = tell_threshold(model, name, converge=converge, title=title)
-    else:
-        axis = parse_axis("--along", along)
-        _claim_figure(plot, overwrite=overwrite)
+        return _reply(told, None, as_json=as_json)
+    axis = parse_axis("--along", along)
+    with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
         title = wanted.tell({FORCE, axis[0]})
         with compilation_announced(notice):
             told, found = tell_thresholds(model, name, axis, converge=converge, title=title)
-        if plot is not None:
+
+        def save(path: Path) -> None:
             from undula.app.drawing import draw_thresholds
 
             done = axis[0], axis[1][: len(found)]
-            draw_thresholds(name, done, found, plot, title=title, units=model.units.names())
-    told = _with_figure(told, plot)
+            units = model.units.names()
+            draw_thresholds(name, done, found, path, claim, title=title, units=units)
+
+        return _reply(told, plot, save, as_json=as_json)
+
+
+def _reply(
+    told: "Told",
+    figure: Path | None,
+    save: Callable[[Path], None] | None = None,
+    *,
+    as_json: bool,
+) -> int:
+    """Draw what is told, if there is a name for the figure, and tell it; return the exit status.
+
+    What was computed is told even where the figure cannot be drawn.
+    """
+    from undula.app.answers import STOPPED_EARLY, notice, reply
+
+    status = _ended(told)
+    try:
+        if figure is not None and save is not None:
+            save(figure)
+    except InputError as error:
+        notice(f"there is no figure: {error}")
+        figure, status = None, STOPPED_EARLY
+    told = _with_figure(told, figure)
     reply(told.answer, told.text, as_json=as_json)
-    return _ended(told)
+    return status
 
 
 def _ended(told: "Told") -> int:
@@ -214,11 +247,18 @@ def _runs_to_draw(kind: str, parameter: str, plot: Path | None, runs: Sequence[P
     return [load_result(run) for run in runs]
 
 
-def _claim_figure(path: Path | None, *, overwrite: bool) -> None:
-    """Refuse a figure that could not be written, before anything is computed."""
+@contextmanager
+def _figure_claimed(
+    path: Path | None, *, overwrite: bool, reads: Sequence[Path | None]
+) -> Iterator["Claim"]:
+    """Claim the name of a figure, if there is one, before anything is computed."""
+    from undula.app.outputs import claimed
+
+    names = [] if path is None else [path]
     if path is not None:
         from undula.app.drawing import check_figure_name
-        from undula.studies.whole_file import claim_output
 
         check_figure_name("--plot", path)
-        claim_output(path, overwrite=overwrite)
+    given = [file for file in reads if file is not None]
+    with claimed(*names, overwrite=overwrite, reads=given) as claim:
+        yield claim

@@ -10,10 +10,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from undula.app.catalogue_tasks import Job, answers_of
 from undula.app.claim_rows import number_text, tally
+from undula.app.outputs import renewing
 from undula.app.report_figures import figures_of, movies_of, write_vectors
+from undula.app.report_folder import PAGE
 from undula.app.report_pages import packed_library, packed_pages
 from undula.studies.items import Item, Paper, Verdict
-from undula.studies.whole_file import write_whole
 
 _VERDICTS: tuple[str, ...] = Verdict.__args__  # type: ignore[attr-defined]
 
@@ -73,9 +74,9 @@ def write_report(
         versions={name: version(name) for name in ("undula", "numpy", "scipy", "numba")},
         python=platform.python_version(),
     )
-    path = out / "index.html"
+    path = out / PAGE
     # Names of files need not be Unicode.
-    write_whole(path, page.encode("utf-8", "replace"), overwrite=True)
+    renewing(path).write(path, page.encode("utf-8", "replace"))
     return path
 
 

@@ -1,7 +1,6 @@
 """Figures and movies of the report: pictures inside of the page, files beside it."""
 
 import base64
-import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +10,13 @@ from undula.app.answers import DONE
 from undula.app.catalogue_tasks import Job, answers_of, carry_out
 from undula.app.claim_rows import left_out
 from undula.app.drawing import figure_bytes
+from undula.app.outputs import renewing
 from undula.errors import InputError
 from undula.studies.claims import Answer
 from undula.studies.items import Figure, Item
 from undula.studies.steps_store import load_steps
 from undula.studies.store import load_result
 from undula.studies.study_store import load_study
-from undula.studies.whole_file import write_whole
 from undula.views import reproduced
 
 _KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
@@ -75,7 +74,13 @@ def figures_of(name: str, item: Item, jobs: Mapping[str, Job], *, quick: bool) -
 def movies_of(
     out: Path, name: str, item: Item, jobs: Mapping[str, Job], *, quick: bool
 ) -> list[Shown]:
-    """Copy the movies of an item beside the page; return them, or why they are not there."""
+    """Copy the movies of an item beside the page; return them, or why they are not there.
+
+    Raises
+    ------
+    InputError
+        The file of a movie is gone, or it cannot be written.
+    """
     answers = answers_of(item, name, jobs)
     shown = []
     for movie in item.movies:
@@ -84,8 +89,7 @@ def movies_of(
         if why:
             shown.append(Shown(place.stem, movie.shows, movie.caption, "", why))
             continue
-        place.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(_path(movie.file, answers), place)
+        renewing(place).write(place, _bytes(_path(movie.file, answers)))
         relative = place.relative_to(out).as_posix()
         shown.append(Shown(place.stem, movie.shows, movie.caption, relative))
     return shown
@@ -104,12 +108,14 @@ def write_vectors(folder: Path, name: str, item: Item, jobs: Mapping[str, Job]) 
         path = folder / f"{name}-{figure.name}.pdf"
         if figure.view is not None:
             drawn = _drawn(figure, answers, jobs)
-            write_whole(path, figure_bytes(drawn, ".pdf"), overwrite=True)
+            renewing(path).write(path, figure_bytes(drawn, ".pdf"))
             continue
         source = _path(figure.file or "", answers)
         if source.suffix == ".svg":
-            write_whole(path.with_suffix(".svg"), source.read_bytes(), overwrite=True)
+            path = path.with_suffix(".svg")
+            renewing(path).write(path, _bytes(source))
             continue
+        renewing(path).check(path)
         outcome = carry_out(_drawing_again(source, path, jobs))
         if outcome["status"] != DONE:
             raise InputError(f"{path} cannot be drawn: {outcome['said']}")
@@ -134,8 +140,12 @@ def _content(
     if figure.view is not None:
         return ".svg", figure_bytes(_drawn(figure, answers, jobs), ".svg")
     path = _path(figure.file or "", answers)
+    return path.suffix, _bytes(path)
+
+
+def _bytes(path: Path) -> bytes:
     try:
-        return path.suffix, path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise InputError(f"{path} is gone; run the same command with --fresh") from error
 

@@ -9,15 +9,16 @@ from typing import Any
 
 from undula.analysis.interrupts import interruptible
 from undula.app.answers import DONE, INTERRUPTED, STOPPED_EARLY, finite, notice, reply
-from undula.app.catalogue_tasks import Job, answers_of, carry_out, jobs_of, refuse_other_files
+from undula.app.catalogue_tasks import Job, answers_of, carry_out, jobs_of
 from undula.app.catalogue_work import TaskWork
 from undula.app.claim_rows import row_of, rows_text, tally
 from undula.app.own_workers import workers_that_fit
 from undula.app.pool import LostError, pool
 from undula.app.progress import swept
 from undula.app.report import write_report
+from undula.app.report_folder import CLAIMS, refuse_foreign, report_claimed
 from undula.studies.items import Item, catalogue, chosen, paper_of
-from undula.studies.whole_file import claim_output, write_whole
+from undula.studies.whole_file import write_whole
 
 #: The exit status if a claim has another verdict than the one that is known to hold.
 DIFFERS = 1
@@ -92,40 +93,41 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
     Raises
     ------
     InputError
-        There is no such item, or the folder cannot be written or is full.
+        There is no such item, or the folder holds something else, belongs to another process now,
+        cannot be written or is full.
     """
     workers_that_fit(asked.workers)
     items, paper = catalogue(asked.catalogue), paper_of(asked.catalogue)
     wanted = chosen(items, asked.names)
-    refuse_other_files(asked.out)
-    claim_output(asked.out / "claims.json", overwrite=True)
-    jobs = jobs_of(items, asked.catalogue / "inputs", asked.out / "data", quick=asked.quick)
-    left = [job for job in _needed(wanted, jobs) if asked.fresh or not job.is_done()]
-    try:
-        status = _carry_on(left, asked)
-    except LostError as lost:
-        status = lost.told
-    rows = {
-        name: _rows(name, item, jobs, asked, wanted=name in wanted) for name, item in items.items()
-    }
-    page = write_report(
-        asked.out,
-        paper,
-        items,
-        rows,
-        jobs,
-        wanted=wanted.keys(),
-        quick=asked.quick,
-        vector=asked.vector,
-    )
-    claims = [row for name in items for row in rows[name]]
-    content = json.dumps(finite({"quick": asked.quick, "claims": claims}), indent=1)
-    write_whole(asked.out / "claims.json", content.encode(), overwrite=True)
+    with report_claimed(asked.out):
+        jobs = jobs_of(items, asked.catalogue / "inputs", asked.out / "data", quick=asked.quick)
+        left = [job for job in _needed(wanted, jobs) if asked.fresh or not job.is_done()]
+        for job in left:
+            refuse_foreign(job.folder)
+        try:
+            status = _carry_on(left, asked)
+        except LostError as lost:
+            status = lost.told
+        rows = {
+            name: _rows(name, item, jobs, asked, wanted=name in wanted)
+            for name, item in items.items()
+        }
+        page = write_report(
+            asked.out,
+            paper,
+            items,
+            rows,
+            jobs,
+            wanted=wanted.keys(),
+            quick=asked.quick,
+            vector=asked.vector,
+        )
+        _write_claims(asked, [row for name in items for row in rows[name]])
     told = [row for name in wanted for row in rows[name]]
     answer = {
         "status": status,
         "report": str(page),
-        "claims_file": str(asked.out / "claims.json"),
+        "claims_file": str(asked.out / CLAIMS),
         "verdicts": tally(told),
         "claims": told,
     }
@@ -134,6 +136,11 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
         notice(f"the reproduction was {status}; the same command goes on from there")
         return STOPPED_EARLY
     return DIFFERS if any(row["as_expected"] is False for row in told) else DONE
+
+
+def _write_claims(asked: Asked, claims: list[dict[str, Any]]) -> None:
+    content = json.dumps(finite({"quick": asked.quick, "claims": claims}), indent=1)
+    write_whole(asked.out / CLAIMS, content.encode(), overwrite=True)
 
 
 def _needed(wanted: Mapping[str, Item], jobs: Mapping[str, Job]) -> list[Job]:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from undula.app.options import Budget, Json, seconds_of
+from undula.app.options import Budget, Json, a_path, seconds_of
 
 
 def reproduce(
@@ -17,12 +17,14 @@ def reproduce(
     quick: Annotated[
         bool, typer.Option("--quick", help="Coarser grids, and without what takes long.")
     ] = False,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder of the report.")] = Path(
-        "report"
-    ),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", parser=a_path, help="Folder of the report.")
+    ] = Path("report"),
     catalogue: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Another catalogue of items.", show_default=False),
+        typer.Option(
+            metavar="DIR", parser=a_path, help="Another catalogue of items.", show_default=False
+        ),
     ] = None,
     workers: Annotated[
         int | None,

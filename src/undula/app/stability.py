@@ -5,7 +5,6 @@ Plotting is imported only if there is something to plot: the answer itself takes
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -46,13 +45,13 @@ class Question:
     along: tuple[str, Values] | None
 
 
-def ask(question: Question, figure: Path | None) -> Told:
-    """Answer a question, and draw the answer if there is a name for the figure.
+def ask(question: Question) -> tuple[Told, Callable[[], Any]]:
+    """Answer a question; return the answer, and what draws it.
 
     Raises
     ------
     InputError
-        A value is out of its range, or the figure cannot be written.
+        A value is out of its range.
     """
     if question.forces is not None:
         answered, draw = _ask_growth(question, question.forces)
@@ -60,14 +59,8 @@ def ask(question: Question, figure: Path | None) -> Told:
         answered, draw = _ask_thresholds(question, *question.along)
     else:
         answered, draw = _ask_onset(question)
-    if figure:
-        from undula.app.drawing import save_figure
-
-        save_figure(draw(), figure, overwrite=True)
     head = {"status": "done", "load": _title(question)}
-    shown = {"figure": str(figure) if figure else None}
-    lines = f"{answered.text}\n  figure  {figure}" if figure else answered.text
-    return Told(head | answered.answer | shown, lines)
+    return Told(head | answered.answer, answered.text), draw
 
 
 def _ask_onset(question: Question) -> tuple[Told, Callable[[], Any]]:

@@ -12,7 +12,8 @@ from undula.analysis.settle_and_step import Course, Step, settle_and_step
 from undula.analysis.thresholds import THRESHOLDS, Threshold, threshold
 from undula.app.answers import DONE, STOPPED_EARLY, notice, reply
 from undula.app.compiling import compilation_announced
-from undula.app.drawing import save_figure
+from undula.app.drawing import beside, save_figure
+from undula.app.outputs import Claim, claimed
 from undula.app.progress import searching, stepped
 from undula.app.step_text import step_answer, step_text
 from undula.errors import InputError
@@ -28,7 +29,6 @@ from undula.studies.steps_store import (
     stored_steps,
     write_steps,
 )
-from undula.studies.whole_file import claim_output
 from undula.views import step_diagram
 
 #: Least seconds between two times that the steps so far are written.
@@ -43,10 +43,11 @@ class _OutOfTimeError(Exception):
 
 @dataclass(frozen=True)
 class Job:
-    """A series with its place on disk, and what is asked besides it."""
+    """A series with its place on disk, the files that it is read from, and what is asked too."""
 
     series: Series
     result: Path
+    reads: Sequence[Path]
     overwrite: bool
     with_thresholds: bool
 
@@ -97,16 +98,24 @@ def step_along(job: Job, *, budget: float, as_json: bool) -> int:
             f" {job.series.course.parameter}"
         )
     end = time.monotonic() + budget
-    steps = [] if job.overwrite or not job.result.exists() else _taken_up(job)
-    claim_output(job.result, overwrite=True)
-    with interruptible() as interrupted:
-        status, found = _carry_on(job, steps, budget, interrupted), None
-    if status == "done" and job.with_thresholds:
-        status, found = _solve(job.series.model, end)
-    figure, drawn = _draw(job, steps, found or ())
+    figure = beside(job.result, ".png")
+    with claimed(
+        job.result,
+        figure,
+        renewed=[figure],
+        continued=[job.result],
+        overwrite=job.overwrite,
+        reads=job.reads,
+    ) as claim:
+        steps = [] if job.overwrite or not job.result.exists() else _taken_up(job)
+        with interruptible() as interrupted:
+            status, found = _carry_on(job, steps, budget, interrupted), None
+        if status == "done" and job.with_thresholds:
+            status, found = _solve(job.series.model, end)
+        drawn = _draw(job, figure, claim, steps, found or ())
     answer = step_answer(job.series, steps, found)
-    answer |= {"status": status, "store": str(job.result) if steps else None, "figure": figure}
-    fine = _tell_of_trouble(job, status, steps) and drawn
+    answer |= {"status": status, "store": str(job.result) if steps else None, "figure": drawn}
+    fine = _tell_of_trouble(job, status, steps) and drawn is not None
     reply(answer, step_text(job.series, answer), as_json=as_json)
     return DONE if fine else STOPPED_EARLY
 
@@ -197,22 +206,23 @@ def _until(end: float, tell: Callable[[int, float], None]) -> Callable[[int, flo
     return progress
 
 
-def _draw(job: Job, steps: Sequence[Step], found: Sequence[Threshold]) -> tuple[str | None, bool]:
-    """Draw the steps beside their file; return the name, None without one, and whether it is so."""
-    path = job.result.with_suffix(".png")
+def _draw(
+    job: Job, path: Path, claim: Claim, steps: Sequence[Step], found: Sequence[Threshold]
+) -> str | None:
+    """Draw the steps beside their file; return the name of the figure, None without one."""
     if not steps:
-        return None, False
+        return None
     values = {one.kind: one.value for one in found if one.value is not None}
     try:
         figure = step_diagram([dataset_of_steps(job.series, steps)], thresholds=[values])
-        save_figure(figure, path, overwrite=True)
+        save_figure(figure, path, claim)
     except InputError as error:
         notice(f"{error}; the steps are stored in {job.result}")
-        return None, False
+        return None
     except KeyboardInterrupt:
         notice(f"stopped; the steps are stored in {job.result}, the same command draws them")
-        return None, False
-    return str(path), True
+        return None
+    return str(path)
 
 
 def _tell_of_trouble(job: Job, status: str, steps: Sequence[Step]) -> bool:

@@ -5,11 +5,14 @@ from typing import Annotated
 
 import typer
 
-from undula.app.options import Budget, Changes, Json, seconds_of
+from undula.app.options import Budget, Changes, Json, a_file, a_path, seconds_of
 
 
 def sweep(
-    file: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Input with a table [study].")],
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="STUDY.toml", parser=a_file, help="Input with a table [study]."),
+    ],
     changes: Changes = None,
     workers: Annotated[
         int | None,
@@ -22,7 +25,10 @@ def sweep(
         typer.Option(metavar="ADDRESS", help="A running Dask scheduler to use instead."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="STORE", help="Folder of the store.", show_default=False)
+        Path | None,
+        typer.Option(
+            metavar="STORE", parser=a_path, help="Folder of the store.", show_default=False
+        ),
     ] = None,
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Do points that have failed again.")
@@ -43,7 +49,9 @@ def sweep(
 
 
 def status(
-    store: Annotated[Path, typer.Argument(metavar="STORE", help="What undula sweep made.")],
+    store: Annotated[
+        Path, typer.Argument(metavar="STORE", parser=a_path, help="What undula sweep made.")
+    ],
     as_json: Json = False,
 ) -> int:
     """Tell how far a study is, also while it goes on: points done, verdicts, failures."""

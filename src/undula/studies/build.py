@@ -13,6 +13,7 @@ from undula.models.loads import DensityLoad, LinearLoad, Load, PointLoad, PowerL
 from undula.models.model import Model
 from undula.models.profiles import TableLoad
 from undula.models.starts import from_state, helix, kicked, mode, planar, straight
+from undula.studies.file_names import file_name
 from undula.studies.model_tables import LoadTable
 from undula.studies.spec import ModelInput, RunInput
 from undula.studies.tables import StartTable
@@ -37,7 +38,9 @@ _STARTS: Mapping[str, Callable[[Model, StartTable], State]] = {
         model, table.amplitude, right_handed=table.handedness == "right"
     ),
     "mode": lambda model, table: mode(model, table.amplitude, angle=table.angle),
-    "state": lambda model, table: _stored_state(model, Path(table.file or ""), table.amplitude),
+    "state": lambda model, table: _stored_state(
+        model, file_name(table.file or ""), table.amplitude
+    ),
 }
 
 

@@ -237,7 +237,7 @@ def _read(path: Path, record: type[Read]) -> Read:
         raise InputError(
             f"{path.name}: {place}: {first['msg']}; mend it as undula/studies/items.py tells"
         ) from error
-    except (OSError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{path.name} cannot be read as TOML ({error}); mend the file") from error
 
 

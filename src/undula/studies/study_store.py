@@ -6,7 +6,6 @@ that is said to be done, is, whenever the writing was cut short. Every file carr
 points of which one is damaged or missing are done again.
 """
 
-import fcntl
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -22,6 +21,7 @@ from undula.errors import InputError
 from undula.studies.blocks import Blocks
 from undula.studies.chunks import Chunks
 from undula.studies.differences import difference
+from undula.studies.name_lock import locked
 from undula.studies.point import software
 from undula.studies.result_kinds import Kind
 from undula.studies.seal import is_whole
@@ -185,17 +185,10 @@ class StudyStore:
         Raises
         ------
         InputError
-            Another process does.
+            Another process does, or the store cannot be written.
         """
-        with (self.path / ".lock").open("w") as lock:
-            try:
-                # The lock ends with the process, however that ends.
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise InputError(
-                    f"another undula sweep is at work on {self.path}; wait for it, or give another"
-                    " --out"
-                ) from None
+        busy = f"another undula sweep is at work on {self.path}; wait for it, or give another --out"
+        with locked(self.path, busy, lock=self.path / ".lock"):
             yield
 
 

@@ -2,7 +2,7 @@
 
 import errno
 import os
-import tempfile
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,28 +10,10 @@ from pathlib import Path
 from undula.errors import InputError
 
 _FULL = (errno.ENOSPC, errno.EDQUOT)
-
-
-def claim_output(path: Path, *, overwrite: bool = False) -> None:
-    """Check that a file can be written, before long work is spent on its content.
-
-    Parameters
-    ----------
-    path
-        The file to be written later; missing folders on the way are made.
-    overwrite
-        Whether an existing file may be replaced.
-
-    Raises
-    ------
-    InputError
-        The file exists and `overwrite` is false, or the folder cannot be made or written.
-    """
-    _refuse_existing(path, overwrite)
-    with folder_trouble_told(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=path.parent) as probe:
-            probe.write(b"x")
+_CURES = {
+    errno.ENAMETOOLONG: "give a shorter name",
+    errno.ELOOP: "remove the link in its place",
+}
 
 
 def write_whole(path: Path, content: bytes, *, overwrite: bool = False) -> None:
@@ -44,7 +26,8 @@ def write_whole(path: Path, content: bytes, *, overwrite: bool = False) -> None:
     content
         All its bytes.
     overwrite
-        Whether an existing file may be replaced.
+        Whether an existing file may be replaced. Of a link, the link itself is; where it points to
+        stays as it is.
 
     Raises
     ------
@@ -52,10 +35,10 @@ def write_whole(path: Path, content: bytes, *, overwrite: bool = False) -> None:
         The file exists and `overwrite` is false, or the folder cannot be written or is full.
         A file that was there before is then left as it was.
     """
-    _refuse_existing(path, overwrite)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     with folder_trouble_told(path):
+        _refuse_existing(path, overwrite)
         path.parent.mkdir(parents=True, exist_ok=True)
+        temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
         try:
             _write_to_disk(temporary, content)
             os.replace(temporary, path)
@@ -67,7 +50,8 @@ def write_whole(path: Path, content: bytes, *, overwrite: bool = False) -> None:
 def _refuse_existing(path: Path, overwrite: bool) -> None:
     if path.is_dir():
         raise InputError(f"{path} is a folder; give the name of a file")
-    if not overwrite and path.exists():
+    # A link counts as well, also one that leads nowhere.
+    if not overwrite and os.path.lexists(path):
         raise InputError(f"{path} exists already; give --overwrite to replace it")
 
 
@@ -94,13 +78,13 @@ def folder_trouble_told(path: Path) -> Iterator[None]:
                 " folder"
             ) from error
         reason = error.strerror or error
-        raise InputError(
-            f"cannot write {path.name} in {path.parent} ({reason}); choose a writable folder"
-        ) from error
+        cure = _CURES.get(error.errno or 0, "choose a writable folder")
+        raise InputError(f"cannot write {path.name} in {path.parent} ({reason}); {cure}") from error
 
 
 def _write_to_disk(path: Path, content: bytes) -> None:
-    with path.open("wb") as file:
+    # Refused where there is anything, a link too: nobody can have us write elsewhere.
+    with path.open("xb") as file:
         file.write(content)
         file.flush()
         os.fsync(file.fileno())

@@ -12,6 +12,7 @@ FRAME = """<!DOCTYPE html>
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline';
  style-src 'unsafe-inline'; img-src data: blob:">
 <meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="generator" content="undula">
 <title>{title}</title>
 <style>
 body {{ margin: 0; font: 14px system-ui, sans-serif; color: #222; background: #fff; }}

@@ -1,6 +1,7 @@
 """A video file that appears whole or not at all."""
 
 import os
+import secrets
 from collections.abc import Iterable
 from pathlib import Path
 from subprocess import DEVNULL, PIPE, Popen
@@ -14,6 +15,8 @@ from undula.errors import InputError
 _ENCODING = [
     *("-c:v", "libx264", "-pix_fmt", "yuv420p"),
     *("-preset", "veryfast", "-crf", "20", "-movflags", "+faststart"),
+    # The mark by which the file is known for one of ours.
+    *("-metadata", "comment=undula"),
 ]
 
 
@@ -59,7 +62,9 @@ def write_video(path: Path, images: Iterable[memoryview], size: tuple[int, int],
         left behind.
     """
     check_video_path(path)
-    partial = path.with_name(f".{path.stem}.{os.getpid()}.part.mp4")
+    partial = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.part.mp4")
+    # Refused where there is anything, a link too: nobody can have the encoder write elsewhere.
+    os.close(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     try:
         _encode(partial, images, size, fps)
         os.replace(partial, path)
