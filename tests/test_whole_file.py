@@ -9,9 +9,16 @@ from pathlib import Path
 import pytest
 
 from refusal import complaint
-from undula.studies.whole_file import claim_output, write_whole
+from undula.app.outputs import claimed
+from undula.studies.whole_file import write_whole
 
-WRITERS = [claim_output, lambda path: write_whole(path, b"new")]
+
+def claim(path: Path, *, overwrite: bool = False) -> None:
+    with claimed(path, overwrite=overwrite):
+        pass
+
+
+WRITERS = [claim, lambda path: write_whole(path, b"new")]
 
 
 @pytest.fixture
@@ -44,12 +51,12 @@ def test_an_existing_file_is_replaced_only_when_asked(
 
 
 def test_a_claim_makes_the_folder_and_leaves_no_file(tmp_path: Path) -> None:
-    claim_output(tmp_path / "new" / "run.nc")
+    claim(tmp_path / "new" / "run.nc")
     assert list((tmp_path / "new").iterdir()) == []
 
 
 def test_a_claim_leaves_the_file_that_it_may_replace(earlier: Path) -> None:
-    claim_output(earlier, overwrite=True)
+    claim(earlier, overwrite=True)
     assert earlier.read_bytes() == b"earlier"
 
 

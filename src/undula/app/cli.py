@@ -86,11 +86,12 @@ def _carry_out(given: Sequence[str]) -> int:
     except KeyboardInterrupt:
         return interrupted()
     except Exception as error:
-        # A wrong option, too, is bad input; its class has no public name in all versions of typer.
-        told = getattr(error, "format_message", None)
-        if told is None and not isinstance(error, InputError):
+        from undula.app.mistakes import sentence_of
+
+        sentence = sentence_of(error)
+        if sentence is None:
             raise
-        return refuse(told() if told else str(error), as_json="--json" in given)
+        return refuse(sentence, as_json="--json" in given)
 
 
 def _version(wanted: bool) -> None:

@@ -18,8 +18,11 @@ def reproduce(
         bool, typer.Option("--quick", help="Coarser grids, and without what takes long.")
     ] = False,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", parser=a_path, help="Folder of the report.")
-    ] = Path("report"),
+        Path | None,
+        typer.Option(
+            metavar="DIR", parser=a_path, help="Folder of the report.", show_default="report"
+        ),
+    ] = None,
     catalogue: Annotated[
         Path | None,
         typer.Option(
@@ -54,5 +57,6 @@ def reproduce(
     if listed:
         return list_items(folder, as_json=as_json)
     seconds = seconds_of(budget)
-    asked = Asked(folder, tuple(names or ()), quick, out, workers, seconds, vector, fresh)
+    report = out or Path("report")
+    asked = Asked(folder, tuple(names or ()), quick, report, workers, seconds, vector, fresh)
     return carry_out(asked, as_json=as_json)

@@ -1,11 +1,17 @@
 """Names of files and folders as users give them: refused where no file can have them."""
 
+import errno
 import os
 from pathlib import Path
 
 from undula.errors import InputError
 
 _LONGEST = 60
+_CURES = {
+    errno.EACCES: "give a name in a folder that is open to you",
+    errno.ENAMETOOLONG: "give a shorter name",
+    errno.ELOOP: "mend the links on the way, or give another name",
+}
 
 
 def any_name(text: str) -> Path:
@@ -22,14 +28,12 @@ def any_name(text: str) -> Path:
         raise InputError(f"{text!r} holds the character NUL, which no name can; leave it out")
     try:
         os.lstat(text)
-    except FileNotFoundError:
-        pass
+    except (FileNotFoundError, NotADirectoryError):
+        pass  # told by whoever looks for it, or is to make it
     except OSError as error:
         shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
-        raise InputError(
-            f"{shown} cannot be used ({error.strerror}); give a name in a folder that is open to"
-            " you, with parts of at most 255 bytes"
-        ) from None
+        cure = _CURES.get(error.errno or 0, "give another name")
+        raise InputError(f"{shown} cannot be used ({error.strerror}); {cure}") from None
     return Path(text)
 
 
