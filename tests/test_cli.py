@@ -232,7 +232,9 @@ def test_an_existing_result_is_refused_before_computing_and_replaced_when_asked(
 ) -> None:
     assert ask("run", *TINY)[0] == 0
     before = Path("results/run/run.nc").read_bytes()
-    Path("results/run/run.mp4").write_bytes(b"a movie of the first run")
+    # A movie of the first run, of which only the mark matters here.
+    mark = b"\xa9cmt\0\0\0\x16data\0\0\0\1\0\0\0\0undula"
+    Path("results/run/run.mp4").write_bytes(mark)
     with monkeypatch.context() as patched:
         patched.setattr("undula.app.jobs.begin", lambda *_: pytest.fail("it was begun"))
         status, _, told = ask("run", *TINY)

@@ -50,9 +50,10 @@ def test_an_existing_file_is_replaced_only_when_asked(
     assert earlier.read_bytes() == b"earlier"
 
 
-def test_a_claim_makes_the_folder_and_leaves_no_file(tmp_path: Path) -> None:
-    claim(tmp_path / "new" / "run.nc")
-    assert list((tmp_path / "new").iterdir()) == []
+def test_a_claim_makes_the_folder_and_removes_it_if_nothing_comes_there(tmp_path: Path) -> None:
+    with claimed(tmp_path / "new" / "folder" / "run.nc"):
+        assert (tmp_path / "new" / "folder").is_dir()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_claim_leaves_the_file_that_it_may_replace(earlier: Path) -> None:

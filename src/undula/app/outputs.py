@@ -8,7 +8,7 @@ is never replaced, and nothing is written through a link.
 import os
 import stat
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from itertools import combinations, product
 from pathlib import Path
@@ -104,7 +104,9 @@ def claimed(
     overwrite: bool = False,
     reads: Sequence[Path] = (),
 ) -> Iterator[Claim]:
-    """Have names for this process alone; missing folders on the way are made.
+    """Have names for this process alone.
+
+    Missing folders on the way are made, and those in which nothing was written removed again.
 
     Parameters
     ----------
@@ -129,14 +131,27 @@ def claimed(
     _refuse_what_is_read(names, reads)
     with ExitStack() as held:
         for path in names:
-            with folder_trouble_told(path):
-                _refuse_long(path)
-                path.parent.mkdir(parents=True, exist_ok=True)
+            _refuse_long(path)
+            held.enter_context(_folder_made(path))
             busy = f"another undula is at work on {path}; wait for it, or give another name"
             held.enter_context(locked(path, busy))
         for path in names:
             claim.check(path)
         yield claim
+
+
+@contextmanager
+def _folder_made(path: Path) -> Iterator[None]:
+    folders = (path.parent, *path.parent.parents)
+    with folder_trouble_told(path):
+        missing = [folder for folder in folders if not os.path.lexists(folder)]
+        path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    finally:
+        with suppress(OSError):  # which ends at the first one that is not empty
+            for folder in missing:
+                folder.rmdir()
 
 
 def _refuse_what_is_read(names: Sequence[Path], reads: Sequence[Path]) -> None:

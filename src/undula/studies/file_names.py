@@ -6,7 +6,8 @@ from pathlib import Path
 
 from undula.errors import InputError
 
-_LONGEST = 60
+#: Bytes of a file's name without its folder, on all usual file systems; letters of one when told.
+_LONGEST_PART, _LONGEST_SHOWN = 255, 60
 _CURES = {
     errno.EACCES: "give a name in a folder that is open to you",
     errno.ENAMETOOLONG: "give a shorter name",
@@ -27,11 +28,14 @@ def any_name(text: str) -> Path:
     if "\0" in text:
         raise InputError(f"{text!r} holds the character NUL, which no name can; leave it out")
     try:
+        # The system sees this only where the folders on the way are there.
+        if any(len(os.fsencode(part)) > _LONGEST_PART for part in Path(text).parts):
+            raise OSError(errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG))
         os.lstat(text)
     except (FileNotFoundError, NotADirectoryError):
         pass  # told by whoever looks for it, or is to make it
     except OSError as error:
-        shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+        shown = text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
         cure = _CURES.get(error.errno or 0, "give another name")
         raise InputError(f"{shown} cannot be used ({error.strerror}); {cure}") from None
     return Path(text)
