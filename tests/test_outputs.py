@@ -19,13 +19,13 @@ from refusal import complaint
 from small_catalogue import small_catalogue
 from small_studies import AXES, QUICK, study_of
 from undula.app.cli import main
-from undula.app.drawing import figure_bytes
 from undula.app.marks import carries_mark
 from undula.app.outputs import claimed
 from undula.app.report_folder import MARK, report_claimed
 from undula.studies.study_store import open_study
 from undula.studies.whole_file import write_whole
 from undula.views import movie
+from undula.views.figure_file import figure_bytes
 
 TINY = ["--set", "model.segments=8", "--set", "time.until=0.02", "--set", "time.samples=21"]
 #: A run that would take minutes, and stores what it has as often as it can.

@@ -1,11 +1,9 @@
 """Figures and movies of stored runs, on disk."""
 
 from collections.abc import Mapping, Sequence
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import xarray as xr
 
@@ -13,7 +11,6 @@ from undula.analysis.branch_records import Branch
 from undula.analysis.linear_results import GrowthCurve
 from undula.analysis.straight_branch import StraightBranch
 from undula.analysis.thresholds import Threshold
-from undula.app.marks import METADATA, NAME
 from undula.app.meter import meter
 from undula.app.outputs import Claim
 from undula.errors import InputError
@@ -24,9 +21,9 @@ from undula.views import (
     portrait,
     threshold_curves,
 )
+from undula.views.figure_file import figure_bytes
 
 FORMATS = (".png", ".pdf", ".svg")
-_DOTS_PER_INCH = 150
 
 
 def beside(path: Path, ending: str, addition: str = "") -> Path:
@@ -105,18 +102,6 @@ def save_figure(figure: Any, path: Path, claim: Claim) -> None:
         There is something that is not to be replaced, or the file cannot be written.
     """
     claim.write(path, figure_bytes(figure, path.suffix))
-
-
-def figure_bytes(figure: Any, ending: str) -> bytes:
-    """Return the content of a file of a matplotlib figure, by its ending, as ".png".
-
-    It carries our mark, and no trace of when it was made.
-    """
-    image, kind = BytesIO(), ending[1:].lower()
-    # Names of parts of an SVG are taken from this word, not from chance.
-    with mpl.rc_context({"svg.hashsalt": NAME}):
-        figure.savefig(image, format=kind, dpi=_DOTS_PER_INCH, metadata=dict(METADATA[kind]))
-    return image.getvalue()
 
 
 def check_straight(parameter: str) -> None:

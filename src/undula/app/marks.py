@@ -1,18 +1,13 @@
-"""The mark of undula in files that it makes: by it they are known for ours, and may be replaced."""
+"""The mark of undula in files that it makes: by it they are known for ours, and may be replaced.
+
+Results are marked by `undula_format`, figures, movies and pages by the views that write them.
+"""
 
 import mmap
 import os
 import stat
-from collections.abc import Mapping
 from pathlib import Path
 
-NAME = "undula"
-#: What matplotlib writes into figures, by their format: the mark, and no time of writing.
-METADATA: Mapping[str, Mapping[str, str | None]] = {
-    "png": {"Software": NAME},
-    "pdf": {"Creator": NAME, "CreationDate": None},
-    "svg": {"Creator": NAME, "Date": None},
-}
 #: How the mark reads in the bytes of a file, by its ending.
 _MARKS = {
     ".nc": b"undula_format",

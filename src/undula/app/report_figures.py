@@ -9,7 +9,6 @@ from typing import Any
 from undula.app.answers import DONE
 from undula.app.catalogue_tasks import Job, answers_of, carry_out
 from undula.app.claim_rows import left_out
-from undula.app.drawing import figure_bytes
 from undula.app.outputs import renewing
 from undula.errors import InputError
 from undula.studies.claims import Answer
@@ -18,6 +17,7 @@ from undula.studies.steps_store import load_steps
 from undula.studies.store import load_result
 from undula.studies.study_store import load_study
 from undula.views import reproduced
+from undula.views.figure_file import figure_bytes
 
 _KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
 #: What tasks store besides their answers, and who reads it.
