@@ -21,14 +21,12 @@ from undula.app.options import (
     Overwrite,
     Result,
     WithLyapunov,
-    a_file,
-    a_path,
     seconds_of,
 )
 from undula.app.questions import find, follow, stability, threshold
 from undula.app.reproduction import reproduce
 from undula.app.studying import status, sweep
-from undula.errors import InputError
+from undula.app.viewing import movie, plot
 
 # Matrices here are small: a second thread of the linear algebra makes them slower, not faster.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -176,79 +174,8 @@ def resume(
         return finish(job, claim, views, budget=seconds, lyapunov=lyapunov, as_json=as_json)
 
 
-@app.command()
-def plot(
-    result: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULT", parser=a_path, help="What undula run or undula sweep wrote."
-        ),
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            parser=a_file,
-            help="Figure: .png, .pdf or .svg; .html for a page of a study.",
-            show_default=False,
-        ),
-    ] = None,
-    view: Annotated[
-        str, typer.Option(help="Of a study: diagram, gallery, paths or basins.")
-    ] = "diagram",
-    at: Annotated[
-        list[str] | None,
-        typer.Option("--at", metavar="KEY=VALUE", help="Of a study: a value of one of its axes."),
-    ] = None,
-    borders: Annotated[
-        bool, typer.Option("--borders", help="Of a study: solve for borders, and compare.")
-    ] = False,
-    overwrite: Overwrite = False,
-    as_json: Json = False,
-) -> int:
-    """Draw a stored run or a study of many runs, by default beside it as .png."""
-    if result.is_dir():
-        from undula.app.diagrams import Asked, plot_study
-
-        return plot_study(result, Asked(view, out, at or (), borders, overwrite), as_json=as_json)
-    from undula.app.answers import DONE, reply
-    from undula.app.drawing import draw_figure, figure_path
-    from undula.app.outputs import claimed
-    from undula.studies.store import load_result
-
-    for option, given in (("--view", view != "diagram"), ("--at", at), ("--borders", borders)):
-        if given:
-            raise InputError(f"{option} is about studies, and {result} is none; leave it out")
-    path = figure_path(result, out)
-    stored, renewed = load_result(result), [path] if out is None else []
-    with claimed(path, renewed=renewed, overwrite=overwrite, reads=[result]) as claim:
-        draw_figure(stored, path, claim)
-    reply({"status": "done", "figure": str(path)}, str(path), as_json=as_json)
-    return DONE
-
-
-@app.command()
-def movie(
-    result: Result,
-    out: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", parser=a_file, help="Movie: .mp4.", show_default=False),
-    ] = None,
-    overwrite: Overwrite = False,
-    as_json: Json = False,
-) -> int:
-    """Make the movie of a stored run, by default beside it as .mp4."""
-    from undula.app.answers import DONE, reply
-    from undula.app.drawing import draw_movie, movie_path
-    from undula.app.outputs import claimed
-    from undula.studies.store import load_result
-
-    path = movie_path(result, out)
-    stored, renewed = load_result(result), [path] if out is None else []
-    with claimed(path, renewed=renewed, overwrite=overwrite, reads=[result]) as claim:
-        draw_movie(stored, path, claim)
-    reply({"status": "done", "movie": str(path)}, str(path), as_json=as_json)
-    return DONE
+for _command in (plot, movie):
+    app.command()(_command)
 
 
 @app.command()

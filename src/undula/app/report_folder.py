@@ -1,10 +1,9 @@
 """The folder of a report: known by a mark, for one process alone, and nothing of others in it."""
 
-import json
 import os
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from undula.app.marks import carries_mark
@@ -18,6 +17,8 @@ MARK = ".undula-report"
 _TEXT = b"This folder is a report of undula reproduce, which replaces what it made in it.\n"
 #: Files in the folder of a task besides those that its command makes.
 KEY, ANSWER = "key", "answer.json"
+#: Files of a store that tell what it holds.
+_OF_STORES = (".zattrs", ".zmetadata")
 #: What a process that was killed leaves of a file it was about to write, or of a lock.
 _LEFTOVERS = (".part", ".part.mp4", ".lock")
 
@@ -98,9 +99,9 @@ def _is_ours(path: Path) -> bool:
 
 
 def _is_study(folder: Path) -> bool:
-    """Tell whether a folder is a store of a study, also one that is damaged inside."""
-    try:
-        attributes = json.loads((folder / ".zattrs").read_text("utf-8"))
-    except (OSError, ValueError):
-        return False
-    return isinstance(attributes, dict) and "undula_format" in attributes
+    """Tell whether a folder is the store of a study, also one that is damaged."""
+    for name in _OF_STORES:
+        with suppress(OSError):
+            if b"undula_format" in (folder / name).read_bytes():
+                return True
+    return False
