@@ -174,8 +174,8 @@ def resume(
         return finish(job, claim, views, budget=seconds, lyapunov=lyapunov, as_json=as_json)
 
 
-for _command in (plot, movie):
-    app.command()(_command)
+app.command()(plot)
+app.command()(movie)
 
 
 @app.command()
