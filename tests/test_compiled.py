@@ -5,13 +5,25 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import numba
 import pytest
-from numba.core import caching, codegen
+from numba.core import codegen
 
 from uncached import uncached
 from undula import compiled
+from undula.compiled import cache
+
+
+class Foreign(NamedTuple):
+    """A record of a user's own."""
+
+    a: float
+    b: int
+
+
+Point = type("Point", (Foreign,), {"__module__": "undula.models.anything"})
 
 INNER = "from toy.compiled import kernel\n\n\n@kernel\ndef inner(x):\n    return x + {}\n"
 OUTER = """
@@ -19,7 +31,7 @@ from toy.compiled import entry
 from toy.inner import inner
 
 
-@entry
+@entry("")
 def outer(x):
     return inner(x)
 """
@@ -27,8 +39,8 @@ SHOW = "from toy.outer import outer; print(outer(1.0), sum(outer.stats.cache_hit
 
 
 def digest_of(package: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    monkeypatch.setattr(compiled, "PACKAGE", package)
-    return compiled.kernel_digest.__wrapped__()
+    monkeypatch.setattr(cache, "PACKAGE", package)
+    return cache.kernel_digest.__wrapped__()
 
 
 @pytest.fixture
@@ -72,9 +84,9 @@ def test_the_digest_stays_when_a_file_changes_of_which_nothing_is_compiled(
 
 def test_compiled_functions_outside_their_floors_take_nothing_from_other_files() -> None:
     # What they took from there could change without a new digest.
-    for source in compiled.PACKAGE.rglob("*.py"):
-        place, text = source.relative_to(compiled.PACKAGE), source.read_text("utf-8")
-        if place.parts[0] in (*compiled.COMPILED_FLOORS, place.name):
+    for source in cache.PACKAGE.rglob("*.py"):
+        place, text = source.relative_to(cache.PACKAGE), source.read_text("utf-8")
+        if place.parts[0] in (*cache.COMPILED_FLOORS, place.name):
             continue
         if re.search(r"import .*\b(entry|kernel|kernel_in_order)\b", text):
             taken = re.findall(r"^from (undula\S*) import", text, flags=re.MULTILINE)
@@ -103,10 +115,12 @@ def test_the_digest_does_not_depend_on_files_that_are_no_sources(
     assert digest_of(package, monkeypatch) == before
 
 
-def test_code_outside_the_package_is_cached_as_if_the_package_were_not_there() -> None:
-    ours, theirs = caching.CacheImpl._locator_classes[:3], caching.CacheImpl._locator_classes[3:]
-    assert not any(locator.from_function(shutil.copytree, shutil.__file__) for locator in ours)
-    assert caching.InTreeCacheLocator in theirs
+def test_functions_and_records_of_other_packages_are_not_kept() -> None:
+    # Nothing here would notice that they change.
+    assert not isinstance(cache.keep(numba.njit(shutil.copytree))._cache, cache.KernelCache)
+    own, foreign = (numba.typeof(record(1.0, 2)) for record in (Point, Foreign))
+    assert cache._all_ours((numba.float64, own))
+    assert not cache._all_ours((numba.float64, foreign))
 
 
 def test_a_kernel_is_optimised_with_what_calls_it_and_not_before(
@@ -144,7 +158,9 @@ def test_a_changed_kernel_is_compiled_anew_where_another_file_calls_it(
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # edits within a second look like none
     toy = tmp_path / "toy"
     toy.mkdir()
-    shutil.copy(compiled.__file__, toy / "compiled.py")
+    shutil.copytree(Path(compiled.__file__).parent, toy / "compiled")
+    for source in (toy / "compiled").glob("*.py"):
+        source.write_text(source.read_text().replace("undula", "toy"))
     (toy / "outer.py").write_text(OUTER)
     (toy / "inner.py").write_text(INNER.format(1.0))
     assert show(tmp_path) == ["2.0", "0"]

@@ -12,7 +12,7 @@ _TINY = float(np.finfo(np.float64).tiny)
 _ONE_COLUMN = 1e-26
 
 
-@entry
+@entry("nodes (m, k, 3), weights (k), along (m, k)")
 def deflect(nodes: Any, angle: Any, weights: Any, along: Any) -> Any:
     """Write to along (m, N + 1) the deflections of shapes (m, N + 1, 3) in the plane at an azimuth.
 
@@ -34,7 +34,7 @@ def deflect(nodes: Any, angle: Any, weights: Any, along: Any) -> Any:
     return crossings, moved
 
 
-@entry
+@entry("along (m, k), even (p, 2 * k), sizes (p)", where=lambda lag, m, p: 0 <= lag <= m - p)
 def pair(along: Any, lag: Any, even: Any, sizes: Any) -> None:
     """Write to even (p, 2 (N + 1)) each deflection and the one `lag` later, divided by their size.
 
@@ -52,7 +52,7 @@ def pair(along: Any, lag: Any, even: Any, sizes: Any) -> None:
             even[i, nodes + k] = inverse * along[i + lag, k]
 
 
-@entry
+@entry("path (p, 2), sizes (p), step (2, 2)", where=lambda lag: lag >= 0)
 def fit_step(path: Any, sizes: Any, lag: Any, step: Any) -> None:
     """Write to step (2, 2) the matrix S that steps samples to those `lag` later, fitted to all.
 
@@ -77,7 +77,7 @@ def fit_step(path: Any, sizes: Any, lag: Any, step: Any) -> None:
         step[0, b] = step[0, b] / first - mixed * step[1, b]
 
 
-@entry
+@entry("path (p, 2), sizes (p), vector (3), logs (p), phases (p)")
 def follow(path: Any, sizes: Any, vector: Any, logs: Any, phases: Any) -> None:
     """Write logarithm and phase (p,) of the amplitude, followed through time.
 

@@ -135,7 +135,7 @@ def fit(row: Any, lower: Any, fitted: Any, left: Any, moved: Any, seen: Any, und
     return pull, steepness
 
 
-@entry
+@entry("clock (m), signals (m, c) complex, weights (m)", where=lambda harmonics: harmonics >= 0)
 def refine(
     clock: Any,
     signals: Any,
@@ -180,7 +180,10 @@ def refine(
     return frequency, True
 
 
-@entry
+@entry(
+    "clock (m), signals (m, c) complex, weights (m), coefficients (c, 2 * harmonics + 1) complex",
+    where=lambda m, harmonics: m > 0 and harmonics >= 0,
+)
 def judge_fit(
     clock: Any, signals: Any, weights: Any, frequency: Any, harmonics: Any, coefficients: Any
 ) -> Any:

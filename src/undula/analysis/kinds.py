@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from undula.analysis.along import model_along, with_unknowns_of
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, follow_branch
 from undula.analysis.convergence import Converged, converge
@@ -22,7 +23,7 @@ from undula.analysis.flapping import (
     flapping_start,
     flapping_unknowns,
 )
-from undula.analysis.parameters import FORCE, changed, value_of
+from undula.analysis.parameters import FORCE, value_of
 from undula.analysis.periodic_orbits import (
     find_periodic,
     periodic_family,
@@ -214,12 +215,14 @@ def follow(
     ------
     InputError
         There is no such parameter, or it is a whole number, or `to` is where the state is or out of
-        the parameter's range.
+        the parameter's range, or there are no such states on the way.
     """
     kind, start = kind_named(state), value_of(state.model, parameter)
-    changed(state.model, parameter, to)
+    model = model_along(state.model, _NAMES[type(state)], parameter, (start, to))
     if to == start:
         raise InputError(f"{parameter} is {start} already; give another value to follow to")
+    if model is not state.model:
+        state = with_unknowns_of(model, state, parameter, kind.find)
     scale = abs(to - start) / _PARTS
     family = kind.family(state, parameter, scale)
     return follow_branch(

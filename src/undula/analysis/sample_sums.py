@@ -6,7 +6,7 @@ from typing import Any
 from undula.compiled import entry
 
 
-@entry
+@entry("time (m), values (m)", where=lambda m: m > 0)
 def line_slope(time: Any, values: Any, tapered: Any) -> Any:
     """Return the slope of the straight line nearest to values (m,), if tapered under a Hann weight.
 
@@ -25,7 +25,7 @@ def line_slope(time: Any, values: Any, tapered: Any) -> Any:
     return (product - first * level / total) / (second - first * first / total)
 
 
-@entry
+@entry("values (m)")
 def mean_and_deviation(values: Any) -> Any:
     """Return the mean of values (m,) and their standard deviation."""
     total, square = 0.0, 0.0
@@ -37,7 +37,7 @@ def mean_and_deviation(values: Any) -> Any:
     return mean, math.sqrt(square / values.shape[0])
 
 
-@entry
+@entry("values (m)", where=lambda m: m > 0)
 def extremes_and_mean(values: Any) -> Any:
     """Return least and largest of values (m,) and of parabolas through their tops, and the mean."""
     least, largest, total = values[0], values[0], 0.0
@@ -56,7 +56,7 @@ def extremes_and_mean(values: Any) -> Any:
     return least, largest, total / values.shape[0]
 
 
-@entry
+@entry("first (m), second (m), gain (m), loss (m)")
 def largest_imbalance(first: Any, second: Any, gain: Any, loss: Any) -> Any:
     """Return by how much two stores (m,) ever differ from what they were, plus gain, minus loss."""
     largest = 0.0
@@ -66,7 +66,7 @@ def largest_imbalance(first: Any, second: Any, gain: Any, loss: Any) -> Any:
     return largest
 
 
-@entry
+@entry("values (m), ahead (m)", where=lambda m: m > 0)
 def still_ahead(values: Any, share: Any, ahead: Any) -> Any:
     """Write to ahead (m,) the largest of values (m,) from each on.
 

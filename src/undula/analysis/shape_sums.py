@@ -13,7 +13,10 @@ import numpy as np
 from undula.compiled import entry
 
 
-@entry
+@entry(
+    "rows (m, n), places (k, 3) int, nodes (m, k, 3)",
+    where=lambda places, k, n: k == 0 or places.max() < n,
+)
 def gather(rows: Any, places: Any, nodes: Any) -> None:
     """Write to nodes the numbers at places (N + 1, 3) of rows (m, n); 0 for a negative place."""
     for i in range(nodes.shape[0]):
@@ -22,7 +25,7 @@ def gather(rows: Any, places: Any, nodes: Any) -> None:
                 nodes[i, k, a] = rows[i, places[k, a]] if places[k, a] >= 0 else 0.0
 
 
-@entry
+@entry("nodes (m, k, 3), places (k, 3), weights (k), out (m)")
 def distances_from(nodes: Any, places: Any, weights: Any, out: Any) -> None:
     """Write to out (m,) how far each shape is from places (N + 1, 3), RMS over the arc length."""
     # Coordinates in a row are added up several at once.
@@ -35,7 +38,7 @@ def distances_from(nodes: Any, places: Any, weights: Any, out: Any) -> None:
         out[i] = math.sqrt(total)
 
 
-@entry
+@entry("nodes (m, k, 3), weights (k), out (m, 3)")
 def means(nodes: Any, weights: Any, out: Any) -> None:
     """Write to out (m, 3) the mean position of each shape."""
     for i in range(nodes.shape[0]):
@@ -47,7 +50,10 @@ def means(nodes: Any, weights: Any, out: Any) -> None:
         out[i, 0], out[i, 1], out[i, 2] = x, y, z
 
 
-@entry
+@entry(
+    "first (a, k, 3), second (b, k, 3), weights (k), distance (m), angle (m)",
+    where=lambda a, b, m: (a == 1 or a == m) and (b == 1 or b == m),
+)
 def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> None:
     """Write distance and angle (m,) of each pair of shapes after the best turn of the second.
 
@@ -70,7 +76,7 @@ def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> N
         distance[i] = math.sqrt(total)
 
 
-@entry
+@entry("nodes (m, k, 3), place (k, 3), weights (k)")
 def largest_turned(nodes: Any, place: Any, weights: Any) -> Any:
     """Return the largest distance of shapes from one (N + 1, 3), each after its best turn."""
     each = np.repeat(weights, 3)
@@ -95,7 +101,7 @@ def largest_turned(nodes: Any, place: Any, weights: Any) -> Any:
     return math.sqrt(largest)
 
 
-@entry
+@entry("nodes (m, k, 3), weights (k)")
 def second_moments(nodes: Any, weights: Any) -> Any:
     """Return the weighted sums of x^2 - y^2 and of 2 x y over all shapes."""
     difference, product = 0.0, 0.0
@@ -107,7 +113,7 @@ def second_moments(nodes: Any, weights: Any) -> Any:
     return difference, product
 
 
-@entry
+@entry("nodes (m, k, 3), weights (k)")
 def squares_in_plane(nodes: Any, weights: Any, angle: Any) -> Any:
     """Return the weighted sums of squares along and across the plane at an azimuth."""
     cosine, sine, along, across = math.cos(angle), math.sin(angle), 0.0, 0.0
@@ -119,7 +125,7 @@ def squares_in_plane(nodes: Any, weights: Any, angle: Any) -> Any:
     return along, across
 
 
-@entry
+@entry("nodes (m, k, 3)")
 def link_squares(nodes: Any) -> Any:
     """Return the least and the largest square of a link's length."""
     least, largest = np.inf, 0.0
@@ -132,7 +138,7 @@ def link_squares(nodes: Any) -> Any:
     return least, largest
 
 
-@entry
+@entry("nodes (m, k, 3)")
 def largest_bend(nodes: Any) -> Any:
     """Return the largest bend at any joint, the z axis before the first link.
 
@@ -156,7 +162,7 @@ def largest_bend(nodes: Any) -> Any:
     return bend
 
 
-@entry
+@entry("nodes (m, k, 3), out (k - 1)")
 def lowest_links(nodes: Any, out: Any) -> None:
     """Write to out (N,) the least z component of each link's direction."""
     out[:] = 1.0

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from undula.analysis.along import model_along
 from undula.analysis.parameters import changed, value_of
 from undula.analysis.stability import spectrum
 from undula.arrays import Array
@@ -46,6 +47,7 @@ def follow_straight(model: Model, parameter: str, start: float, to: float) -> St
         There is no such parameter, or a value is out of its range.
     """
     value_of(model, parameter)
+    model_along(model, "straight", parameter, (start, to))
 
     def leading(value: float) -> complex:
         return complex(spectrum(changed(model, parameter, value), count=1).values[0])

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from undula.analysis.along import model_along
 from undula.analysis.branch_records import Bifurcation
 from undula.analysis.branches import Progress
 from undula.analysis.convergence import converge
@@ -117,8 +118,7 @@ def threshold(
     InputError
         The kind is none of these, or the model has no limit of many links.
     """
-    if kind not in THRESHOLDS:
-        raise InputError(f"threshold {kind!r} is not known; take {', '.join(THRESHOLDS)}")
+    _check_kind(kind)
     if kind == "onset" and model.axisymmetric:
         return _onset(model)
     guess = near.at if near else None
@@ -165,7 +165,9 @@ def threshold_curve(
     """
     if parameter == FORCE:
         raise InputError(f"thresholds are values of {FORCE}; take another parameter for a curve")
-    models = [changed(model, parameter, value) for value in values]
+    _check_kind(kind)
+    shared = model_along(model, _SEARCHES[kind].kind, parameter, values)
+    models = [changed(shared, parameter, value) for value in values]
     found: list[Threshold] = []
     for done, each in enumerate(models, start=1):
         near = found[-1] if found and found[-1].value is not None else None
@@ -175,6 +177,11 @@ def threshold_curve(
         if stop():
             break
     return tuple(found)
+
+
+def _check_kind(kind: str) -> None:
+    if kind not in THRESHOLDS:
+        raise InputError(f"threshold {kind!r} is not known; take {', '.join(THRESHOLDS)}")
 
 
 def _onset(model: Model) -> Threshold:

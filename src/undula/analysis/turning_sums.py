@@ -6,7 +6,10 @@ from typing import Any
 from undula.compiled import entry
 
 
-@entry
+@entry(
+    "nodes (m, k, 3), chosen (c) int, angle (c, m - 1), turned (c, m - 1, 2)",
+    where=lambda chosen, c, k: c == 0 or (chosen.min() >= 0 and chosen.max() < k - 1),
+)
 def link_turns(nodes: Any, chosen: Any, angle: Any, turned: Any) -> None:
     """Write how the chosen links turn between samples of nodes (m, N + 1, 3).
 

@@ -15,7 +15,7 @@ from typing import Any
 from undula.analysis.sweep_points import NOT_DONE
 from undula.app.answers import DONE
 from undula.app.report_folder import ANSWER, KEY, clear, refuse_foreign
-from undula.compiled import PACKAGE
+from undula.compiled.cache import PACKAGE
 from undula.errors import InputError
 from undula.studies.claims import Answer
 from undula.studies.digests import sealed_json, unsealed_json

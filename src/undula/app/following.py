@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from undula.analysis.along import model_along
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.convergence import Converged
 from undula.analysis.interrupts import interruptible
@@ -94,7 +95,9 @@ def _from_onset(
 def _between(
     model: Model, kind: str, way: Way, start: float, stop: Callable[[], bool]
 ) -> Branch[Any] | NotFound:
-    begun = kind_of(kind).find(changed(model, way.parameter, start))
+    chosen = kind_of(kind)
+    along = model_along(model, kind, way.parameter, (start, way.end))
+    begun = chosen.find(changed(along, way.parameter, start))
     if isinstance(begun, NotFound):
         return begun
     with approached(f"following {kind}", start, way.end) as tell:

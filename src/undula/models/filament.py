@@ -74,6 +74,9 @@ class Filament(LinkedRod):
         twist.
     twist_stiffness : float
         C/B of the elastic twist, positive; without meaning for the others.
+    keep_directors : bool
+        Whether directors are among its unknowns even if it needs none, as one of a family whose
+        others do.
 
     Raises
     ------
@@ -91,6 +94,7 @@ class Filament(LinkedRod):
     bending_ratio: float = 1.0
     twist: Literal["paper", "rigid", "elastic"] = "rigid"
     twist_stiffness: float = 1.0
+    keep_directors: bool = False
 
     def __post_init__(self) -> None:
         """Refuse values that make no filament."""
@@ -136,6 +140,7 @@ class Filament(LinkedRod):
             return
         refuse_beyond_pi(self.natural_curvature, self.segments, MOST_SEGMENTS)
         what = "natural_curvature" if self.piece_curvature.any() else "bending_ratio"
+        what = what if self.held else "keep_directors"
         for other, wanted in (("confined", False), ("inextensibility", "exact")):
             if getattr(self, other) != wanted:
                 raise InputError(
@@ -152,9 +157,14 @@ class Filament(LinkedRod):
         return of_pieces(self.natural_curvature, self.segments)
 
     @property
-    def framed(self) -> bool:
+    def held(self) -> bool:
         """Whether its directors matter: it is naturally curved, or bends not alike about them."""
         return self.bending_ratio != 1.0 or bool(self.piece_curvature.any())
+
+    @property
+    def framed(self) -> bool:
+        """Whether directors are among its unknowns; the clamp holds the first: no turns then."""
+        return self.keep_directors or self.held
 
     @cached_property
     def system(self) -> Rod:
@@ -200,18 +210,18 @@ class Filament(LinkedRod):
 
         None as well where the straight filament is no equilibrium or bends not alike.
         """
-        return self.load if self.inextensibility == "exact" and not self.framed else None
+        return self.load if self.inextensibility == "exact" and not self.held else None
 
     def linearised(self) -> tuple[Array, Array]:
         """Return stiffness and drag (N, N) of small displacements of the straight filament."""
-        if self.framed:
+        if self.held:
             raise InputError(
                 "small motions about the straight state are those of a filament without natural"
                 " curvature that bends alike about both directors: use natural_curvature = (0, 0)"
                 " and bending_ratio = 1, or ask for its equilibrium, its threshold onset, or a"
                 " periodic motion"
             )
-        return super().linearised()
+        return super(Filament, replace(self, keep_directors=False)).linearised()
 
     def rest(self) -> State:
         """Return the state in which nothing is bent, the equilibrium without a load."""

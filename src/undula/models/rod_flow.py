@@ -15,16 +15,17 @@ from undula.compiled import entry
 from undula.errors import InputError
 from undula.models.rod import FramedRod, Rod
 from undula.models.rod_matrix import exact_derivative
+from undula.models.rod_sizes import belongs
 from undula.numerics.system import derivative_half_bandwidth, generator, residual, weigh
 
 
-@entry
+@entry("y (n), w (n), out (n)", where=lambda system, n: belongs(system, n))
 def balance(system: Any, y: Any, w: Any, out: Any) -> None:
     """Write the residual R(x) w - f and the constraints to out (n,)."""
     residual(system, y, w, 1.0, out)
 
 
-@entry
+@entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(system, n))
 def turning(system: Any, y: Any, out: Any, dragged: Any) -> None:
     """Write S x and R(x) S x, for the velocity of a unit rate of turning, to out and dragged."""
     generator(system, y, out)

@@ -20,10 +20,18 @@ from undula.models.framed_derivative import framed_derivative
 from undula.models.joint import stiffening
 from undula.models.rod import GENTLE_RODS, RODS, FramedRod, SpatialRod, WindingRod
 from undula.models.rod_derivative import derivative_kernel, link_blocks_kernel
+from undula.models.rod_sizes import belongs
 from undula.models.vectors import vectors
 from undula.models.winding_derivative import winding_derivative
 from undula.numerics.banded import blank_kernel
-from undula.numerics.system import derivative, implements, matrix, planar_matrix, plane
+from undula.numerics.system import (
+    derivative,
+    derivative_width,
+    implements,
+    matrix,
+    planar_matrix,
+    plane,
+)
 
 
 def gentle_kernel(rod: Any, *, planar: bool) -> Callable[..., Any]:
@@ -186,7 +194,10 @@ for _rod in RODS:
 _register_planar(SpatialRod)
 
 
-@entry
+@entry(
+    "y (n), w (n), band (n, b)",
+    where=lambda system, n, b: belongs(system, n) and b == derivative_width(system),
+)
 def exact_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
     """Write the exact derivative of the residual to band (n, 2 b + 1), see `matrix`."""
     derivative(system, y, w, c, turn, band)

@@ -15,10 +15,11 @@ from undula.compiled import entry, kernel, overwrite
 from undula.models.joint import joint_energy, stiffening
 from undula.models.rod import OTHER_JOINTS, RODS, FramedRod, WindingRod
 from undula.models.rod_equations import cosine_kernel, mean_tangent_kernel, tangents_kernel
+from undula.models.rod_sizes import belongs
 from undula.models.tridiagonal import solve_tridiagonal
 from undula.models.twist import find_frames, framed_energy
 from undula.models.winding import follow_angles, winding_energy
-from undula.numerics.system import generic, implements, rates, residual
+from undula.numerics.system import RATES, generic, implements, rates, residual
 
 
 @generic
@@ -156,7 +157,7 @@ implements(elastic_energy, WindingRod)(winding_energy)
 implements(elastic_energy, FramedRod)(framed_energy)
 
 
-@entry
+@entry(f"y (n), v (n + {RATES})", where=lambda system, n: belongs(system, n))
 def rate_of_change(system: Any, y: Any, v: Any) -> None:
     """Find the multipliers (written to y) and all rates (to v, n + RATES) at the positions in y."""
     n = y.shape[0]
@@ -165,7 +166,10 @@ def rate_of_change(system: Any, y: Any, v: Any) -> None:
     rates(system, y, v[:n], v[n:])
 
 
-@entry
+@entry(
+    "states (m, n), out (m, q)",
+    where=lambda system, n, q: belongs(system, n) and (q == 2 or q == 4),
+)
 def observe(system: Any, states: Any, out: Any) -> None:
     """Write energy of bending and of stretching, active power and dissipation to out (m, 4).
 

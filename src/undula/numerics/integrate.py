@@ -27,6 +27,7 @@ from undula.numerics.memory import (
     FAILED,
     IN_FRAME,
     LARGEST_STEP,
+    MEMORY_SIZES,
     ORDER,
     PLANNED_FACTOR,
     PLANNED_ORDER,
@@ -39,15 +40,17 @@ from undula.numerics.memory import (
     STORING_RATE,
     TIME,
     TURN_RATE,
+    has_its_orders,
 )
 from undula.numerics.output import energy_maximum, interpolate
 from undula.numerics.results import Status
 from undula.numerics.stepping import (
+    OPTIONS_SIZES,
     correct,
     integrate_rates,
     predict,
 )
-from undula.numerics.system import generator, size
+from undula.numerics.system import RATES, belongs, generator, matrix_width, size
 from undula.numerics.workspace import workspace
 
 _DONE, _PAUSED = Status.DONE.value, Status.PAUSED.value
@@ -131,7 +134,13 @@ def note_speeds(system: Any, memory: Any, options: Any, work: Any) -> None:
     memory.real[DISPLACEMENT] = size(system, work.correction, options.mask)
 
 
-@entry
+@entry(
+    f"{MEMORY_SIZES}, {OPTIONS_SIZES}, times (t), states (t, n + {RATES}),"
+    f" sections (s, 1 + n + {RATES})",
+    where=lambda system, memory, n, b: (
+        belongs(system, n) and b == matrix_width(system) and has_its_orders(memory)
+    ),
+)
 def advance(
     system: Any, memory: Any, options: Any, times: Any, states: Any, sections: Any, most_steps: Any
 ) -> Any:

@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from undula.compiled import kernel
 from undula.numerics.schemes import BackwardDifferentiation
 from undula.numerics.system import RATES
 
@@ -17,6 +18,11 @@ REALS = 13
 ORDER, PLANNED_ORDER, EQUAL_STEPS, STEPS, REJECTED, FAILED, FACTORISATIONS, SOLVES = range(8)
 IN_FRAME, FRAME_VOTES, FRAME_CHANGES, PLANAR = range(8, 12)
 COUNTS = 12
+#: What a memory has to be for compiled code to keep inside of it, see `undula.compiled.sizes`.
+MEMORY_SIZES = (
+    f"memory.factored_at (n), memory.differences (r, n + {RATES}), memory.factors (n, b),"
+    f" memory.border (n), memory.real ({REALS}), memory.count ({COUNTS}) int"
+)
 
 
 class Memory(NamedTuple):
@@ -64,3 +70,11 @@ def start(
     count[[ORDER, PLANNED_ORDER]] = 1
     width = 2 * type(system).half_bandwidth + 1
     return Memory(differences, np.zeros((n, width)), np.zeros(n), np.zeros(n), real, count)
+
+
+@kernel
+def has_its_orders(memory: Any) -> Any:
+    """Tell whether a memory has the differences that its order and the next one take."""
+    highest = memory.differences.shape[0] - 3
+    order, planned = memory.count[ORDER], memory.count[PLANNED_ORDER]
+    return 0 < order <= highest and 0 < planned <= highest

@@ -55,6 +55,13 @@ class Options(NamedTuple):
     error: np.ndarray
 
 
+#: What options have to be beside the memory that they go with, see `undula.compiled.sizes`.
+OPTIONS_SIZES = (
+    "options.mask (n), options.reference (n), options.gamma (r - 1), options.alpha (r - 1),"
+    " options.error (r - 1)"
+)
+
+
 def options(
     scheme: BackwardDifferentiation,
     mask: np.ndarray,

@@ -8,7 +8,7 @@ for positions x and multipliers z, interleaved in one vector y (n,) so that its 
 It is a `typing.NamedTuple` of arrays and numbers with a class attribute `half_bandwidth`. Its
 equations are functions registered for its type with `implements`; compiled code that calls the
 generic functions below is specialised to them, so nothing in a step goes through a pointer or
-Python.
+Python. Called from Python they go by the type as well.
 
 A step of an implicit method with step parameter c and w = c dy/dt has to solve
 
@@ -22,6 +22,7 @@ a plane, whose `planar_structure` has no entries between what mirroring keeps an
 import inspect
 import math
 from collections.abc import Callable
+from functools import wraps
 from typing import Any
 
 from numba.extending import overload
@@ -50,12 +51,22 @@ def implements(generic: Callable[..., Any], system: type) -> Callable[..., Any]:
 def generic(default: Callable[..., Any]) -> Callable[..., Any]:
     """Make `default` a generic function: it holds for systems that register nothing else."""
 
-    def choose(system: Any, *_: Any) -> Any:
-        return _implementations.get((default, system.instance_class), default)
+    @wraps(default)
+    def chosen(system: Any, *others: Any) -> Any:
+        return _implementations.get((chosen, type(system)), default)(system, *others)
 
-    default.__signature_keys__ = inspect.signature(default).parameters.keys()  # type: ignore[attr-defined]
-    overload(default, strict=False, jit_options=RESOLVED)(choose)
-    return default
+    def choose(system: Any, *_: Any) -> Any:
+        return _implementations.get((chosen, system.instance_class), default)
+
+    chosen.__signature_keys__ = inspect.signature(default).parameters.keys()  # type: ignore[attr-defined]
+    overload(chosen, strict=False, jit_options=RESOLVED)(choose)
+    return chosen
+
+
+@generic
+def belongs(system: Any, n: Any) -> Any:
+    """Tell whether the system's own arrays fit one another and n unknowns; they are not checked."""
+    return True
 
 
 @generic
@@ -157,28 +168,69 @@ def derivative_half_bandwidth(system: type) -> int:
     return int(getattr(system, "derivative_half_bandwidth", own))
 
 
+def matrix_width(system: Any) -> Any:
+    """Return how many entries a row of the system's matrix has."""
+    return _width(type(system))
+
+
+def derivative_width(system: Any) -> Any:
+    """Return how many entries a row of the system's exact derivative has."""
+    return _derivative_width(type(system))
+
+
 def factor_derivative(system: Any, band: Any) -> Any:
     """Factor what `derivative` wrote in place; False where a pivot vanishes."""
+    structure = banded.full(derivative_half_bandwidth(type(system)))
+    return banded.factor_kernel(structure)(band)
 
 
 def solve_derivative(system: Any, band: Any, x: Any) -> Any:
     """Overwrite x (n,) by the solution of the factored derivative."""
+    structure = banded.full(derivative_half_bandwidth(type(system)))
+    return banded.solve_kernel(structure)(band, x)
 
 
 def factor(system: Any, band: Any) -> Any:
     """Factor the system's matrix in place; False where a pivot vanishes."""
+    return banded.factor_kernel(structure_of(type(system)))(band)
 
 
 def solve(system: Any, band: Any, x: Any) -> Any:
     """Overwrite x (n,) by the solution of the factored system."""
+    return banded.solve_kernel(structure_of(type(system)))(band, x)
 
 
 def planar_factor(system: Any, band: Any) -> Any:
-    """Factor the system's planar matrix in place; False where a pivot vanishes."""
+    """Factor the system's planar matrix in place; False where a pivot vanishes or there is none."""
+    structure = planar_structure_of(type(system))
+    return structure is not None and banded.factor_kernel(structure)(band)
 
 
 def planar_solve(system: Any, band: Any, x: Any) -> Any:
     """Overwrite x (n,) by the solution of the factored planar system."""
+    structure = planar_structure_of(type(system))
+    return structure and banded.solve_kernel(structure)(band, x)
+
+
+def _width(system: type) -> int:
+    half: int = system.half_bandwidth  # type: ignore[attr-defined]
+    return 2 * half + 1
+
+
+def _derivative_width(system: type) -> int:
+    return 2 * derivative_half_bandwidth(system) + 1
+
+
+@overload(matrix_width, strict=False, jit_options=RESOLVED)
+def _matrix_width(system: Any) -> Any:
+    width = _width(system.instance_class)
+    return lambda system: width  # noqa: ARG005
+
+
+@overload(derivative_width, strict=False, jit_options=RESOLVED)
+def _width_of_derivative(system: Any) -> Any:
+    width = _derivative_width(system.instance_class)
+    return lambda system: width  # noqa: ARG005
 
 
 @overload(factor, strict=False, jit_options=RESOLVED)

@@ -19,9 +19,18 @@ import numpy as np
 from undula.compiled import entry, kernel
 from undula.numerics.control import rescale
 from undula.numerics.integrate import take_step
-from undula.numerics.memory import ORDER, STEP, TIME
+from undula.numerics.memory import MEMORY_SIZES, ORDER, STEP, TIME, has_its_orders
 from undula.numerics.results import Status
-from undula.numerics.system import derivative, factor_derivative, solve_derivative, weigh
+from undula.numerics.stepping import OPTIONS_SIZES
+from undula.numerics.system import (
+    belongs,
+    derivative,
+    derivative_width,
+    factor_derivative,
+    matrix_width,
+    solve_derivative,
+    weigh,
+)
 from undula.numerics.workspace import workspace
 
 _DONE, _PAUSED = Status.DONE.value, Status.PAUSED.value
@@ -60,7 +69,15 @@ def carry(
     take_change(memory, difference, found)
 
 
-@entry
+@entry(
+    f"{MEMORY_SIZES}, {OPTIONS_SIZES}, changes (c, r, n), band (n, w)",
+    where=lambda system, memory, n, b, w: (
+        belongs(system, n)
+        and b == matrix_width(system)
+        and w == derivative_width(system)
+        and has_its_orders(memory)
+    ),
+)
 def advance_with_changes(
     system: Any, memory: Any, options: Any, changes: Any, band: Any, end: Any, most_steps: Any
 ) -> Any:
