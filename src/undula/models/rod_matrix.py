@@ -195,8 +195,8 @@ _register_planar(SpatialRod)
 
 
 @entry(
-    "y (n), w (n), band (n, b)",
-    where=lambda system, n, b: belongs(system, n) and b == derivative_width(system),
+    "y (n), w (n), band (n, d)",
+    where=lambda system, n, d: belongs(system, n) and d == derivative_width(system),
 )
 def exact_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
     """Write the exact derivative of the residual to band (n, 2 b + 1), see `matrix`."""

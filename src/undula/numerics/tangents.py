@@ -70,11 +70,11 @@ def carry(
 
 
 @entry(
-    f"{MEMORY_SIZES}, {OPTIONS_SIZES}, changes (c, r, n), band (n, w)",
-    where=lambda system, memory, n, b, w: (
+    f"{MEMORY_SIZES}, {OPTIONS_SIZES}, changes (c, r, n), band (n, d)",
+    where=lambda system, memory, n, b, d: (
         belongs(system, n)
         and b == matrix_width(system)
-        and w == derivative_width(system)
+        and d == derivative_width(system)
         and has_its_orders(memory)
     ),
 )
