@@ -92,6 +92,7 @@ class KernelCache(caching._Cache):
 
     def __init__(self, function: Any) -> None:
         code, python = function.__code__, "".join(map(str, sys.version_info[:2]))
+        self._whose = f"{function.__module__}.{function.__qualname__}"
         self._name = f"{function.__qualname__}-{code.co_firstlineno}.py{python}"
         self._folder = _folder(os.path.dirname(code.co_filename))
 
@@ -111,7 +112,7 @@ class KernelCache(caching._Cache):
             content = Path(path).read_bytes()
             if content[:32] == _seal(content[32:]):
                 known, reduced = pickle.loads(content[32:])
-                if known == _key(signature, target):
+                if known == self._key(signature, target):
                     return compiler.CompileResult._rebuild(target, *reduced)
         return None
 
@@ -120,7 +121,7 @@ class KernelCache(caching._Cache):
         path = self._path(signature, result.target_context)
         if path is None or result.lifted or result.library.has_dynamic_globals:
             return
-        content = dumps((_key(signature, result.target_context), result._reduce()))
+        content = dumps((self._key(signature, result.target_context), result._reduce()))
         try:
             _write(path, _seal(content) + content)
         except OSError as error:
@@ -129,8 +130,13 @@ class KernelCache(caching._Cache):
     def _path(self, signature: Any, target: Any) -> str | None:
         if self._folder is None or not _all_ours(signature):
             return None
-        names = hashlib.sha256(repr(_key(signature, target)).encode()).hexdigest()
+        names = hashlib.sha256(repr(self._key(signature, target)).encode()).hexdigest()
         return os.path.join(self._folder, f"{self._name}.{names[:16]}.nbc")
+
+    def _key(self, signature: Any, target: Any) -> tuple[Any, ...]:
+        """Return what a file is for: a function, its signature, the machine, and numba's ways."""
+        settings = (getattr(config, name) for name in _SETTINGS)
+        return self._whose, signature, target.codegen().magic_tuple(), *settings
 
     def enable(self) -> None:
         """Do nothing: it is never off."""
@@ -140,12 +146,6 @@ class KernelCache(caching._Cache):
 
     def flush(self) -> None:
         """Do nothing: what is out of date is not loaded."""
-
-
-def _key(signature: Any, target: Any) -> tuple[Any, ...]:
-    """Return what a compiled function is for: its signature, the machine, and how to compile."""
-    settings = (getattr(config, name) for name in _SETTINGS)
-    return signature, target.codegen().magic_tuple(), *settings
 
 
 def _seal(content: bytes) -> bytes:
