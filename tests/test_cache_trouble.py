@@ -246,7 +246,8 @@ def test_the_command_line_says_one_sentence(
 def test_a_command_answers_without_a_cache_and_with_a_broken_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ask = [sys.executable, "-m", "undula", "find", "spinning", "--set", "model.segments=8"]
+    main = "from undula.app.cli import main; raise SystemExit(main())"
+    ask = [sys.executable, "-c", main, "find", "spinning", "--set", "model.segments=8"]
     kept_in = tmp_path / "cache"
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(kept_in))
 

@@ -15,7 +15,11 @@ from undula.errors import InputError
 from undula.models.model import Model
 
 # States that stay what they are when they are turned about the axis, which some bodies cannot be.
-_TURNED = ("straight", "spinning", "flapping")
+_TURNED = {
+    "straight": "the straight state",
+    "spinning": "spinning",
+    "flapping": "planar flapping",
+}
 
 
 def _with_shared_unknowns(model: Model, parameter: str, values: Iterable[float]) -> Model:
@@ -45,8 +49,8 @@ def model_along(model: Model, kind: str, parameter: str, values: Iterable[float]
     shared = _with_shared_unknowns(model, parameter, values)
     if kind in _TURNED and not shared.axisymmetric:
         raise InputError(
-            f"{kind} cannot be followed along {parameter} to where the filament is held in one"
-            " direction, by natural curvature or a bending_ratio other than 1, and has no such"
+            f"{_TURNED[kind]} cannot be followed along {parameter} to where the filament is held in"
+            " one direction, by natural curvature or a bending_ratio other than 1, and has no such"
             " state; follow equilibrium or periodic, or take another parameter"
         )
     return shared

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from undula.analysis.along import model_along
 from undula.analysis.parameters import changed
 from undula.arrays import Array
 from undula.errors import InputError, is_number
@@ -39,9 +40,16 @@ def checked_values(values: Sequence[float] | Array) -> Array:
 
 
 def models_along(model: Model, parameter: str, values: Array) -> list[Model]:
-    """Return the model at each value of a parameter, which the force cannot be."""
+    """Return the model at each value of a parameter, which the force cannot be.
+
+    Raises
+    ------
+    InputError
+        It is, or the straight filament is no state at a value.
+    """
     if parameter == "load.force":
         raise InputError("the curve itself is about load.force; take another parameter for it")
+    model_along(model, "straight", parameter, values.tolist())
     return [changed(model, parameter, value) for value in values.tolist()]
 
 
