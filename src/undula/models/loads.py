@@ -12,6 +12,7 @@ Source of the profiles: Ling, Guo & Kanso (2018), equations for linear, concentr
 forces.
 """
 
+import math
 from abc import abstractmethod
 from dataclasses import dataclass, field
 
@@ -95,7 +96,7 @@ class PointLoad(DensityLoad):
     def __post_init__(self) -> None:
         """Refuse values that are no load."""
         super().__post_init__()
-        require(self, "position", np.nextafter(0.0, 1.0), 1.0, "a number in (0, 1]")
+        require(self, "position", math.ulp(0.0), 1.0, "a number in (0, 1]")
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -172,10 +173,13 @@ class PowerLoad(DensityLoad):
             return tuple(sorted(s for s in layer if _SHORTEST_FIRST_PIECE <= s < 1.0))
         return _NEAR_CLAMP if p < _SINGULAR_BELOW and p % 1.0 else ()
 
+    # Far below the tip a steep load is 0 to all digits.
+    @np.errstate(under="ignore")
     def force_below(self, s: Points) -> Points:
         """Return F s^(p+1)."""
         return self.force * s ** (self.exponent + 1.0)
 
+    @np.errstate(under="ignore")
     def moment_below(self, s: Points) -> Points:
         """Return F (p + 1) / (p + 2) s^(p+2)."""
         p = self.exponent
