@@ -13,19 +13,20 @@ import numpy as np
 from undula.arrays import Array
 from undula.compiled import entry
 from undula.errors import InputError
+from undula.lent import lent
 from undula.models.rod import FramedRod, Rod
 from undula.models.rod_matrix import exact_derivative
 from undula.models.rod_sizes import belongs
 from undula.numerics.system import derivative_half_bandwidth, generator, residual, weigh
 
 
-@entry("y (n), w (n), out (n)", where=lambda system, n: belongs(system, n))
+@entry("y (n), w (n), out (n)", where=lambda system, n: belongs(lent(system), n))
 def balance(system: Any, y: Any, w: Any, out: Any) -> None:
     """Write the residual R(x) w - f and the constraints to out (n,)."""
-    residual(system, y, w, 1.0, out)
+    residual(lent(system), lent(y), lent(w), 1.0, lent(out))
 
 
-@entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(system, n))
+@entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(lent(system), n))
 def turning(system: Any, y: Any, out: Any, dragged: Any) -> None:
     """Write S x and R(x) S x, for the velocity of a unit rate of turning, to out and dragged."""
     generator(system, y, out)

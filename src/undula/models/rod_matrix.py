@@ -16,6 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 from undula.compiled import entry, kernel
+from undula.lent import lent
 from undula.models.framed_derivative import framed_derivative
 from undula.models.joint import stiffening
 from undula.models.rod import GENTLE_RODS, RODS, FramedRod, SpatialRod, WindingRod
@@ -196,8 +197,8 @@ _register_planar(SpatialRod)
 
 @entry(
     "y (n), w (n), band (n, d)",
-    where=lambda system, n, d: belongs(system, n) and d == derivative_width(system),
+    where=lambda system, n, d: belongs(lent(system), n) and d == derivative_width(system),
 )
 def exact_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
     """Write the exact derivative of the residual to band (n, 2 b + 1), see `matrix`."""
-    derivative(system, y, w, c, turn, band)
+    derivative(lent(system), lent(y), lent(w), c, turn, lent(band))
