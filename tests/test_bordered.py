@@ -116,9 +116,9 @@ def test_a_pivot_that_vanishes_is_an_error(row: int) -> None:
     band = np.zeros((9, 5))
     band[:, 2] = 1.0
     band[row, 2] = 0.0
-    with pytest.raises(ZeroDivisionError, match="vanishes"):
+    with pytest.raises(np.linalg.LinAlgError, match="vanishes"):
         BandFactors(band)
-    with pytest.raises(ZeroDivisionError, match=f"pivot {row + 1}"):
+    with pytest.raises(np.linalg.LinAlgError, match=f"pivot {row + 1}"):
         BorderedBand(band, np.ones((9, 1)), np.ones((1, 9)), np.zeros((1, 1)))
     # Softened there it is regular.
     band[row, 1 if row else 3] = 1.0

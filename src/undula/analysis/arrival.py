@@ -173,12 +173,12 @@ class Lookout:
         problem = TurningShapeAlone(self.model, FORCE, unknowns, abs(rate))
         try:
             found = newton(problem, np.append(unknowns, rate), 0.0)
-        except (InputError, ZeroDivisionError):
+            if not found.converged:
+                return
+            y, rate = found.u[:-1], float(found.u[-1])
+            around = Disturbances.of(self.model, y, rate)
+        except (InputError, np.linalg.LinAlgError):
             return  # there is nothing but the straight state, or a matrix is singular
-        if not found.converged:
-            return
-        y, rate = found.u[:-1], float(found.u[-1])
-        around = Disturbances.of(self.model, y, rate)
         state, nodes = turning_state(self.model, y, rate, around), self._nodes(y)
         size = float(displacement(nodes))
         if state.stable:

@@ -37,7 +37,7 @@ class BandFactors:
 
     Raises
     ------
-    ZeroDivisionError
+    LinAlgError
         A pivot vanishes: the matrix is singular to the last digit.
     """
 
@@ -47,7 +47,7 @@ class BandFactors:
             to_lapack(band), self._b, self._b, overwrite_ab=True
         )
         if info != 0:
-            raise ZeroDivisionError(f"pivot {info} of a banded matrix vanishes")
+            raise np.linalg.LinAlgError(f"pivot {info} of a banded matrix vanishes")
 
     def solve(self, right: Array) -> Array:
         """Return the solution for right-hand sides of shape (n,) or (n, k)."""

@@ -235,7 +235,7 @@ def _evaluated(problem: Problem, u: Array, p: float) -> Evaluation | None:
     """Return the problem at a point, None where it is not defined or singular."""
     try:
         return problem.evaluate(u, p)
-    except (InputError, ZeroDivisionError, np.linalg.LinAlgError):
+    except (InputError, np.linalg.LinAlgError):
         return None
 
 
