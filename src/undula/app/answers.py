@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from undula.app.streams import Guarded, err, out
-from undula.errors import InputError
 
 #: Exit status of every command.
 DONE, BAD_INPUT, STOPPED_EARLY = 0, 2, 3
@@ -44,16 +43,6 @@ def reply(answer: Answer, text: str, *, as_json: bool) -> None:
 def notice(sentence: str) -> None:
     """Tell something that is not the answer, on standard error."""
     _write(err(), f"undula: {sentence}")
-
-
-def sentence_of(error: Exception) -> str | None:
-    """Return what to tell of a mistake or of singular linear algebra; None of any other error."""
-    if type(error).__name__ == "LinAlgError":  # numpy's, which is not imported for this
-        return (
-            f"a system of equations has no unique solution for this model ({error}); change its"
-            " numbers a little, or take more links"
-        )
-    return str(error) if isinstance(error, InputError) else None
 
 
 def refuse(sentence: str, *, as_json: bool) -> int:

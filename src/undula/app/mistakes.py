@@ -15,7 +15,8 @@ def sentence_of(error: Exception) -> str | None:
     Parameters
     ----------
     error
-        What ended a command: bad input, a wrong option, or a file in a place that is closed.
+        What ended a command: bad input, a wrong option, a file in a place that is closed, or
+        equations without one solution.
     """
     # A wrong option, too, is bad input; its class has no public name in all versions of typer.
     told = getattr(error, "format_message", None)
@@ -25,5 +26,10 @@ def sentence_of(error: Exception) -> str | None:
         return (
             f"cannot use {os.fsdecode(error.filename)} ({error.strerror}); open it to yourself, or"
             " give another place"
+        )
+    if type(error).__name__ == "LinAlgError":  # numpy's, which is not imported for this
+        return (
+            f"a system of equations has no unique solution for this model ({error}); change its"
+            " numbers a little, or take more links"
         )
     return str(error) if isinstance(error, InputError) else None
