@@ -8,7 +8,8 @@ from undula.analysis.births import Birth, births
 from undula.analysis.branch_records import Bifurcation
 from undula.analysis.integrate import integrate
 from undula.analysis.kinds import follow_from_onset
-from undula.analysis.periodic_orbits import find_periodic, follow_born
+from undula.analysis.periodic_orbits import follow_born
+from undula.analysis.periodic_search import find_periodic
 from undula.analysis.periodic_state import Periodic
 from undula.analysis.run import Run
 from undula.analysis.spinning import find_spinning

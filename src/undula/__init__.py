@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from undula.analysis.integrate import integrate
     from undula.analysis.kinds import converged, follow, follow_from_onset
     from undula.analysis.lyapunov import lyapunov
-    from undula.analysis.periodic_orbits import find_periodic, follow_born
+    from undula.analysis.periodic_orbits import follow_born
+    from undula.analysis.periodic_search import find_periodic
     from undula.analysis.periodic_state import Periodic
     from undula.analysis.record import dataset_of
     from undula.analysis.run import Run
@@ -77,7 +78,7 @@ _HOMES = {
     "disagreements": "undula.analysis.disagreements",
     "find_equilibrium": "undula.analysis.equilibrium",
     "find_flapping": "undula.analysis.flapping",
-    "find_periodic": "undula.analysis.periodic_orbits",
+    "find_periodic": "undula.analysis.periodic_search",
     "find_spinning": "undula.analysis.spinning",
     "follow": "undula.analysis.kinds",
     "follow_born": "undula.analysis.periodic_orbits",

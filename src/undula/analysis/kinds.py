@@ -25,12 +25,12 @@ from undula.analysis.flapping import (
 )
 from undula.analysis.parameters import FORCE, value_of
 from undula.analysis.periodic_orbits import (
-    find_periodic,
     periodic_family,
     periodic_judge,
     periodic_start,
     periodic_unknowns,
 )
+from undula.analysis.periodic_search import find_periodic
 from undula.analysis.periodic_state import Periodic
 from undula.analysis.spinning import (
     find_spinning,
@@ -158,7 +158,11 @@ def with_error(state: Solved) -> Solved:
 
 
 def converged(
-    model: Model, kind: str, *, progress: Callable[[int], None] | None = None
+    model: Model,
+    kind: str,
+    guess: Any = None,
+    *,
+    progress: Callable[[int], None] | None = None,
 ) -> Converged[Any] | NotFound:
     """Return a state in the limit of many links.
 
@@ -167,6 +171,8 @@ def converged(
     model : Model
         With the fewest links of those that the limit is taken from.
     kind : {"spinning", "flapping", "equilibrium", "periodic"}
+    guess : optional
+        What the search with the fewest links begins with, as in the call that finds such a state.
     progress : callable, optional
         Called with each number of links before the state is solved for.
 
@@ -180,7 +186,7 @@ def converged(
     def find(finer: Model, coarser: Any) -> Any:
         if progress:
             progress(finer.links)
-        return chosen.find(finer, coarser)
+        return chosen.find(finer, guess if coarser is None else coarser)
 
     return converge(model, find, chosen.quantities)
 

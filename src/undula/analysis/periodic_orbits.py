@@ -1,4 +1,4 @@
-"""Motions that are periodic up to a turn, solved for: from a run, or where flapping gives birth.
+"""Motions that are periodic up to a turn as equations, and those that flapping gives birth to.
 
 A body that is held in one direction, as one that is curved by nature, has none to be turned by: its
 motions are periodic as they are, x(t + T) = x(t), whether they go round or to and fro.
@@ -15,17 +15,13 @@ import numpy as np
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, UnresolvedError, follow_branch
 from undula.analysis.flapping import INTERVALS, METHOD, flapping_unknowns, in_space
-from undula.analysis.integrate import integrate
 from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.periodic_state import Periodic
-from undula.analysis.run import Run
-from undula.analysis.schedule import Ending
 from undula.analysis.spinning import require_space
-from undula.analysis.states import Flapping, NotFound
+from undula.analysis.states import Flapping
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model
-from undula.models.starts import from_state, kicked
 from undula.numerics.closure import Closure, Rotation
 from undula.numerics.continuation import Point, Steps
 from undula.numerics.floquet import floquet_of
@@ -34,85 +30,19 @@ from undula.numerics.orbits import (
     Orbit,
     OrbitProblem,
     Reference,
-    find_orbit,
     orbit_at,
 )
 from undula.numerics.problem import DenseLinear
 from undula.numerics.shooting import Shooting, Shot
 
-# A run without a guess begins with this kick [rad] and takes this long at most [T].
-_KICK, _LONGEST = 0.1, 5.0
 # A motion that turns back with less variation of its energy than this, over the mean, has become a
 # steady one.
 _STEADY = 0.01
 
 
-def find_periodic(model: Model, guess: Run | Periodic | None = None) -> Periodic | NotFound:
-    """Solve for a motion that is periodic, up to a turn about the axis if that is a symmetry.
-
-    Parameters
-    ----------
-    model : Model
-        In space.
-    guess : Run or Periodic, optional
-        A run whose shape repeats itself, or the state of a similar model. Without one a run from a
-        small kick is taken.
-
-    Returns
-    -------
-    Periodic or NotFound
-
-    Raises
-    ------
-    InputError
-        The model is confined to a plane.
-    """
-    require_space(model)
-    if guess is None:
-        guess = integrate(model, kicked(model, _KICK), until="settled", limit=_LONGEST)
-        if guess.ending is Ending.INTERRUPTED:
-            raise KeyboardInterrupt  # which a run takes as its end, with what there is
-    if isinstance(guess, Periodic):
-        nodes, duration, angle = guess.nodes[-1], guess.duration, guess.angle
-    elif not model.axisymmetric:
-        period = _period(guess)
-        if period is None:
-            return NotFound(
-                f"the run does not repeat itself ({guess.verdict.name}); run until it has settled,"
-                " with until = 'settled', and for longer"
-            )
-        nodes, duration, angle = guess.motion.nodes[-1], period, 0.0
-    else:
-        shape, turning = guess.shape_frequency, guess.rotation_frequency
-        if shape is None or turning is None or shape.value == 0.0:
-            return NotFound(
-                f"the run's shape does not repeat itself ({guess.verdict.name}); let it settle"
-                " longer, or look for spinning or flapping"
-            )
-        nodes, duration = guess.motion.nodes[-1], 1.0 / shape.value
-        angle = 2.0 * np.pi * turning.value * duration
-    start = model.admissible(from_state(model, nodes))
-    last = [duration, angle] if model.axisymmetric else [duration]
-    search = find_orbit(_shooting(model, FORCE), np.concatenate([start, last]), model.load.force)
-    if search.orbit is None:
-        residual = search.solution.residual if search.solution else None
-        return NotFound(f"no such motion was found from the guess: {search.advice}", residual)
-    return _judged(model, search.orbit)
-
-
-def _period(run: Run) -> float | None:
-    """Return the time after which the shape of a run comes back as it is [T], if it does."""
-    if run.settled is not None and run.settled.period is not None:
-        return run.settled.period
-    seen = run.verdict.evidence
-    if "shape_period" in seen:
-        return seen["shape_period"]
-    return 1.0 / run.frequency.value if run.frequency and run.frequency.value else None
-
-
 def periodic_family(state: Periodic, parameter: str, scale: float) -> Family[Periodic]:
     """Return the family of a motion that is periodic up to a turn, along a parameter."""
-    shooting = _shooting(state.model, parameter)
+    shooting = periodic_shooting(state.model, parameter, len(state.unknowns))
     start = shooting.shoot(periodic_unknowns(state), value_of(state.model, parameter))
     assert isinstance(start, Shot)  # the state was found so
     problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
@@ -157,7 +87,7 @@ def follow_born(
             " followed; give a symmetry breaking of planar flapping"
         )
     require_space(state.model)
-    u, shooting = _in_space(state), _shooting(state.model, parameter)
+    u, shooting = _in_space(state), periodic_shooting(state.model, parameter, INTERVALS)
     start = shooting.shoot(u, bifurcation.value)
     assert isinstance(start, Shot)  # the planar motion was found so
     problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
@@ -192,7 +122,9 @@ def _null_vector(problem: OrbitProblem, u: Array, p: float) -> Array:
     return np.asarray(direction / np.sqrt(problem.weights @ direction**2))
 
 
-def _shooting(model: Model, parameter: str) -> Shooting:
+def periodic_shooting(model: Model, parameter: str, intervals: int) -> Shooting:
+    """Return how to shoot from a start over a period of so many intervals, along a parameter."""
+
     def rotate(y: Array, angle: float) -> Array:
         turned = y.reshape(-1, model.equations.stride).copy()
         cosine, sine = np.cos(angle), np.sin(angle)
@@ -206,8 +138,7 @@ def _shooting(model: Model, parameter: str) -> Shooting:
     return Shooting(
         equations_at=lambda p: changed(model, parameter, p).equations,
         closure=Closure(rotation=Rotation(rotate, generator) if model.axisymmetric else None),
-        # Half a beat takes as many as are enough for a shape that comes back turned.
-        intervals=INTERVALS if model.axisymmetric else 3 * INTERVALS,
+        intervals=intervals,
         method=METHOD,
     )
 
@@ -215,8 +146,8 @@ def _shooting(model: Model, parameter: str) -> Shooting:
 def periodic_start(model: Model) -> None:  # noqa: ARG001
     """Refuse to begin at an onset: other motions do."""
     raise InputError(
-        "periodic motions begin where others lose stability; follow one from a number, as in"
-        " --along load.force=100:200"
+        "periodic motions begin where others lose stability, not at the onset; follow one from a"
+        " value at which there is one"
     )
 
 
@@ -229,7 +160,7 @@ def periodic_judge(
         orbit = orbit_at(problem, u, p)
         if orbit is None:
             raise UnresolvedError
-        return _judged(changed(model, parameter, p), orbit)
+        return periodic_state(changed(model, parameter, p), orbit)
 
     return judge
 
@@ -238,7 +169,8 @@ def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -
     return Family(parameter, problem, periodic_judge(model, parameter), _named, scale)
 
 
-def _judged(model: Model, orbit: Orbit) -> Periodic:
+def periodic_state(model: Model, orbit: Orbit) -> Periodic:
+    """Return the motion that an orbit is, judged."""
     shot = orbit.shot
     judged = floquet_of(shot)
     return Periodic(

@@ -5,10 +5,18 @@ from functools import cached_property
 
 import numpy as np
 
-from undula.analysis.observables import Range, tip_height, tip_radius, winding_angle
-from undula.analysis.periodic import over_period
+from undula.analysis.observables import (
+    Range,
+    mean_position,
+    tip_height,
+    transverse,
+)
+from undula.analysis.periodic import finely, over_period
 from undula.arrays import Array, ComplexArray, Shapes
 from undula.models.model import Model
+
+# A line of so few cycles in a period is the mean of a motion that does not turn.
+_AT_REST = 1e-6
 
 
 @dataclass(frozen=True)
@@ -34,9 +42,11 @@ class Periodic:
         Of disturbances [1/T], by falling real part, without trivial ones.
     trivial : tuple of float
         Errors of the multipliers of a shift in time and of a turn about the axis.
+    time_error : float
+        Estimated error of the frequency by the steps in time [cycles per T].
     error : float or None
-        Estimated error of the frequency against the body that the links stand for [cycles per T],
-        None where the links are the body, or if it was not asked for.
+        Estimated error of the frequency against the body that the numbers stand for, of links and
+        steps together [cycles per T]; None if it was not asked for.
     """
 
     model: Model
@@ -46,6 +56,7 @@ class Periodic:
     residual: float
     exponents: ComplexArray
     trivial: tuple[float, ...]
+    time_error: float = np.nan
     error: float | None = None
 
     @property
@@ -65,22 +76,22 @@ class Periodic:
         return self.model.load.force
 
     @cached_property
-    def turned(self) -> float:
-        """The angle by which the motion has turned after `duration`, full turns counted [rad].
+    def turns(self) -> float:
+        """Cycles during `duration` of the strongest line of the mean position, seen from the lab.
 
-        The equations know it up to full turns only; the filament's deflection tells the rest.
+        The shape tells how far it has turned up to full turns only; which line is the strongest
+        tells the rest, as it does for the frequency of a run. Positive from x to y.
         """
-        start = self.model.nodes(self.start)[None]
-        winding = winding_angle(np.concatenate([start, self.nodes]))
-        full_turns = np.round((winding[-1] - winding[0] - self.angle) / (2.0 * np.pi))
-        return float(self.angle + 2.0 * np.pi * full_turns)
+        across = self._turned_back(transverse(mean_position(self.nodes)))
+        lines = np.fft.fft(across)
+        cycles = self.angle / (2.0 * np.pi) + np.fft.fftfreq(across.size, 1.0 / across.size)
+        moving = np.where(np.abs(cycles) > _AT_REST, np.abs(lines), 0.0)
+        return float(cycles[np.argmax(moving)])
 
     @property
     def frequency(self) -> float:
-        """Turns per T, in the mean; repetitions of the motion where no turn is a symmetry."""
-        if not self.model.axisymmetric:
-            return self.shape_frequency
-        return abs(self.turned) / (2.0 * np.pi * self.duration)
+        """Cycles per T of the whole motion, that of its strongest line as for a run."""
+        return abs(self.turns) / self.duration
 
     @property
     def shape_frequency(self) -> float:
@@ -95,7 +106,14 @@ class Periodic:
     @cached_property
     def tip_radius(self) -> Range:
         """Distance of the tip from the axis [L]."""
-        return over_period(tip_radius(self.nodes))
+        # Near the axis the distance has a kink, which the way of the tip has not.
+        across = self._turned_back(transverse(self.nodes[:, -1]))
+        return over_period(np.hypot(finely(across.real), finely(across.imag)))
+
+    def _turned_back(self, across: ComplexArray) -> ComplexArray:
+        """Return x + i y (m,) in a frame that turns with the motion, in which it is periodic."""
+        passed = np.arange(1, across.size + 1) / across.size
+        return np.asarray(across * np.exp(-1j * self.angle * passed), dtype=np.complex128)
 
     @cached_property
     def tip_height(self) -> Range:
@@ -123,6 +141,6 @@ class Periodic:
         """Tell it in one line."""
         word = "stable" if self.stable else "unstable"
         return (
-            f"{self.shape_frequency:.8g} shapes and {self.frequency:.8g} turns per T under force"
+            f"{self.frequency:.8g} cycles and {self.shape_frequency:.8g} shapes per T under force"
             f" {self.force:.6g}: {word}, leading rate {self.leading_rate:.4g} /T"
         )

@@ -9,10 +9,10 @@ from undula.analysis.observables import Range
 from undula.analysis.periodic_state import Periodic
 from undula.analysis.states import NotFound, Spinning
 from undula.app.answers import Told
+from undula.app.beginnings import Beginning
 from undula.app.progress import searching
 from undula.app.run_text import with_error as with_digits
 from undula.app.units_told import force_in, units_lines
-from undula.models.model import Model
 from undula.models.units import Units
 
 #: Units of what a state tells, by the beginning of its name; of energies they are the model's.
@@ -21,10 +21,12 @@ _UNITS = {
     "tip_radius": "L",
     "tip_height": "L",
     "leading_rate": "/T",
+    "period": "T",
+    "turn": "rad",
 }
 
 
-def find(model: Model, kind: str, *, converge: bool, title: str) -> Told:
+def find(asked: Beginning, kind: str, *, converge: bool) -> Told:
     """Solve for a state; in the limit of many links if asked to.
 
     Raises
@@ -32,8 +34,13 @@ def find(model: Model, kind: str, *, converge: bool, title: str) -> Told:
     InputError
         There is no such kind, or the model has no limit of many links.
     """
+    model, title, chosen = asked.model, asked.title, kind_of(kind)
     with searching(f"finding {kind}") as tell:
-        found = converged(model, kind, progress=tell) if converge else kind_of(kind).find(model)
+        found: Any = asked.first()
+        if converge and not isinstance(found, NotFound):
+            found = converged(model, kind, found, progress=tell)
+        elif found is None:
+            found = chosen.find(model)
     if isinstance(found, NotFound):
         return not_found(found, f"{title}: {kind}", model.units)
     answer = (
@@ -85,7 +92,11 @@ def state_answer(state: Solved) -> dict[str, Any]:
         "trivial_multiplier_error": max(state.trivial),
     }
     if isinstance(state, Periodic):
-        period = {"period": state.duration, "turn": state.angle}
+        period = {
+            "period": state.duration,
+            "turn": state.angle,
+            "time_error": state.time_error,
+        }
         return shared | {"kind": "periodic"} | swinging | period
     return shared | {
         "kind": "flapping",

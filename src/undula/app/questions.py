@@ -68,18 +68,29 @@ def find(
     file: Input = None,
     changes: Changes = None,
     converge: Converge = False,
+    run: Annotated[
+        Path | None,
+        typer.Option("--run", metavar="RESULT.nc", help="Of periodic: what this run has come to."),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="Of periodic: the seed of the run that is made without --run."),
+    ] = None,
     as_json: Json = False,
 ) -> int:
-    """Solve for a state of a kind, and tell whether it is stable."""
+    """Solve for a state of a kind, and tell whether it is stable.
+
+    A periodic motion is that which a run comes to: the one of --run, whose model it is of, or else
+    one from a small kick.
+    """
     from undula.app import finding
     from undula.app.answers import DONE, notice, reply
+    from undula.app.beginnings import beginning_of
     from undula.app.compiling import compilation_announced
-    from undula.studies.build import build_model
-    from undula.studies.spec import read_model_input
 
-    wanted = read_model_input(file, changes or ())
+    asked = beginning_of(kind, file, changes or (), run, seed)
     with compilation_announced(notice):
-        told = finding.find(build_model(wanted), kind, converge=converge, title=wanted.load_text)
+        told = finding.find(asked, kind, converge=converge)
     reply(told.answer, told.text, as_json=as_json)
     return DONE
 

@@ -218,16 +218,18 @@ def orbit_at(problem: OrbitProblem, u: Array, p: float) -> Orbit | None:
     return Orbit(u, p, shot, problem.referred_to(u)) if isinstance(shot, Shot) else None
 
 
-def time_error(orbit: Orbit) -> float:
-    """Return the error of T, from the same orbit with half as many intervals again.
-
-    It is not a number where that is not found.
-    """
+def with_shorter_steps(orbit: Orbit) -> Orbit | None:
+    """Return the same orbit with half as many intervals again, None if that is not found."""
     shooting, shot = orbit.problem.shooting, orbit.shot
     finer = replace(shooting, intervals=math.ceil(1.5 * shooting.intervals))
     stages = resampled(shot.y, shot.flow.stages, finer.intervals, shot.moving, shooting.method)
-    found = find_orbit(finer, orbit.u, orbit.p, stages).orbit
-    return math.nan if found is None else abs(found.shot.duration - shot.duration)
+    return find_orbit(finer, orbit.u, orbit.p, stages).orbit
+
+
+def time_error(orbit: Orbit) -> float:
+    """Return the error of T, from the same orbit with shorter steps; NaN if that is not found."""
+    found = with_shorter_steps(orbit)
+    return math.nan if found is None else abs(found.shot.duration - orbit.shot.duration)
 
 
 def _moves(shot: Shot) -> bool:

@@ -196,7 +196,14 @@ def read_tables(
     record: type[Input], path: Path | None, overrides: Sequence[str]
 ) -> tuple[dict[str, Any], Input]:
     """Read an input as `read_input` does for a run; return its tables as given, and checked."""
-    given = apply_overrides({} if path is None else read_toml(path), overrides)
+    return changed_tables(record, {} if path is None else read_toml(path), overrides)
+
+
+def changed_tables(
+    record: type[Input], tables: Mapping[str, Any], overrides: Sequence[str]
+) -> tuple[dict[str, Any], Input]:
+    """Change single keys in tables; return those that a record reads as given, and checked."""
+    given = apply_overrides(tables, overrides)
     _checked(_WholeFile, given)
     for override in overrides:
         if override.partition(".")[0].strip() not in record.model_fields:
@@ -204,8 +211,8 @@ def read_tables(
                 f"--set {override} changes a table that this command does not read; it reads"
                 f" {', '.join(f'[{known}]' for known in record.model_fields)}"
             )
-    tables = {name: given[name] for name in record.model_fields if name in given}
-    return tables, _checked(record, tables)
+    mine = {name: given[name] for name in record.model_fields if name in given}
+    return mine, _checked(record, mine)
 
 
 def _times(given: Mapping[str, Any]) -> dict[str, float]:

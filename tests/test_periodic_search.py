@@ -1,0 +1,170 @@
+"""What a run has come to, solved for: the answer is the run's own motion, or says why it is not."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import undula as un
+from refusal import complaint
+from undula.analysis.alignment import aligned_distance
+from undula.analysis.periodic_guesses import Seen
+from undula.analysis.periodic_search import come_to
+from undula.analysis.returns import recurrence
+from undula.analysis.states import NotFound
+
+THREE = un.Chain(3, un.TipLoad(100.0))
+WINDMILL = ["--set", "model.kind=chain", "--set", "model.links=3", "--set", "load.force=100"]
+
+
+@pytest.fixture(scope="module")
+def settled() -> un.Run:
+    """Give a run that ends in windmilling: its mirror image comes back after half its period."""
+    return un.integrate(THREE, un.kicked(THREE), until="settled")
+
+
+def found(state: un.Periodic | NotFound) -> un.Periodic:
+    assert not isinstance(state, NotFound), state.reason
+    return state
+
+
+def check(state: un.Periodic, run: un.Run) -> None:
+    """Check that a state is what a run has come to."""
+    back = recurrence(run.shown.time, run.shown.nodes)
+    assert back is not None
+    # The shape comes back to 1e-5 of the displacement, from one sample in fifty to another.
+    assert state.duration == pytest.approx(back.period, rel=1e-4)
+    assert state.stable
+    assert run.frequency is not None
+    # The frequencies are those of the same line; the steps of the run leave 1e-6 of it.
+    allowed = run.frequency.error + 1e-5 * state.frequency
+    assert state.frequency == pytest.approx(abs(run.frequency.value), abs=allowed)
+    # The orbit passes through the shape that the run ends with.
+    start = THREE.nodes(state.start)
+    assert aligned_distance(run.motion.nodes[-1], start).distance < 1e-3
+
+
+def test_the_motion_found_from_a_run_is_that_of_the_run(settled: un.Run) -> None:
+    assert settled.verdict.name == "windmilling"
+    state = found(un.find_periodic(settled))
+    check(state, settled)
+    assert settled.shape_frequency is not None
+    # Of double period: only mirror images are the same after half of it.
+    assert state.shape_frequency == pytest.approx(0.5 * settled.shape_frequency.value, rel=1e-5)
+    assert state.frequency == pytest.approx(2.0 * state.shape_frequency, rel=1e-12)
+
+
+def test_every_way_to_give_a_run_leads_to_the_same_motion(settled: un.Run) -> None:
+    state = found(un.find_periodic(settled))
+    stored = un.dataset_of(settled)
+    for other in (un.find_periodic(THREE, settled), un.find_periodic(THREE, stored)):
+        assert found(other).frequency == state.frequency
+    # Without one the run is that of the default start, which is the same.
+    assert found(un.find_periodic(THREE)).frequency == state.frequency
+    again = found(un.find_periodic(THREE, state))
+    assert again.duration == pytest.approx(state.duration, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", [2, 5])
+def test_the_motion_found_for_a_seed_is_that_of_the_run_from_it(seed: int) -> None:
+    run = un.integrate(THREE, un.kicked(THREE, seed=seed), until="settled")
+    check(found(un.find_periodic(THREE, seed=seed)), run)
+
+
+def test_an_answer_states_how_far_its_steps_in_time_leave_it(settled: un.Run) -> None:
+    state = found(un.find_periodic(settled))
+    finer = un.integrate(THREE, state.start, until=5.0 * state.duration, rtol=1e-9, samples=6)
+    apart = np.abs(finer.motion.nodes[-1] - finer.motion.nodes[0]).max()
+    # Off by so much of a period after five of them, at a tip's speed of some 2 pi L a turn.
+    allowed = 5.0 * 10.0 * state.time_error * state.duration * 2.0 * np.pi * 0.6
+    assert apart < max(allowed, 1e-5)
+    assert 0.0 < state.time_error < 1e-5
+
+
+def test_a_run_that_tells_half_its_period_is_solved_for_with_the_whole(settled: un.Run) -> None:
+    assert settled.settled is not None
+    assert settled.settled.period is not None
+    # Of too few samples for a recurrence.
+    last = settled.shown.time[-2:], settled.shown.nodes[-2:]
+    seen = Seen(*last, "windmilling", 0.5 * settled.settled.period, 0.0)
+    check(found(come_to(THREE, seen)), settled)
+
+
+def test_another_motion_than_the_run_ends_with_is_no_answer(settled: un.Run) -> None:
+    assert settled.settled is not None
+    assert settled.settled.period is not None
+    last = settled.shown.time[-2:], settled.shown.nodes[-2:]
+    # Neither this nor its double is a period of the motion.
+    state = come_to(THREE, Seen(*last, "windmilling", 0.7 * settled.settled.period, 0.0))
+    assert isinstance(state, NotFound)
+    assert "guess" in state.reason or "is another one: its period is" in state.reason
+
+
+def test_a_spinning_run_has_no_period_of_its_shape() -> None:
+    slow = un.Chain(3, un.TipLoad(25.0))
+    run = un.integrate(slow, un.kicked(slow, 0.3), until="settled")
+    assert run.verdict.name == "spinning"
+    state = un.find_periodic(run)
+    assert isinstance(state, NotFound)
+    assert "does not repeat itself (spinning)" in state.reason
+
+
+def test_a_guess_and_a_seed_are_refused_together(settled: un.Run) -> None:
+    assert "leave one out" in complaint(lambda: un.find_periodic(THREE, settled, seed=2))
+
+
+def undula(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    command = [str(Path(sys.executable).with_name("undula")), *words]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def test_the_command_takes_a_stored_run(tmp_path: Path) -> None:
+    settle = ["--set", 'time.until="settled"', "--no-movie", "--out", "r", "--json"]
+    ran = undula("run", *WINDMILL, *settle, folder=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    run = json.loads(ran.stdout)
+
+    def asked(*words: str) -> dict[str, Any]:
+        done = undula("find", "periodic", *words, "--json", folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        return dict(json.loads(done.stdout))
+
+    answer = asked("--run", "r/run.nc")
+    assert (answer["force"], answer["links"], answer["stable"]) == (100.0, 3, True)
+    assert answer["frequency"] == pytest.approx(run["frequency"], abs=run["frequency_error"])
+    assert answer["period"] == pytest.approx(run["settled"]["period"], rel=1e-5)
+    for name in ("bending_energy", "tip_radius", "tip_height"):
+        for part in ("min", "max", "mean"):
+            # Extremes are read between samples, those of the run of a spline.
+            assert answer[name][part] == pytest.approx(run[name][part], abs=5e-3), (name, part)
+    # Without a run it makes the same one.
+    assert asked(*WINDMILL)["period"] == answer["period"]
+    nearby = asked("--run", "r/run.nc", "--set", "load.force=101")
+    assert (nearby["force"], nearby["stable"]) == (101.0, True)
+    assert answer["frequency"] < nearby["frequency"] < 1.02 * answer["frequency"]
+
+
+@pytest.mark.parametrize(
+    ("words", "cure"),
+    [
+        (["spinning", "--seed", "2"], "--seed is for periodic motions; leave it out for spinning"),
+        (["flapping", "--run", "r.nc"], "--run is for periodic motions"),
+        (["periodic", "--run", "r.nc", "--seed", "2"], "leave one of them out"),
+        (["periodic", "in.toml", "--run", "r.nc"], "--run and in.toml both say"),
+        (["periodic", "--run", "gone.nc"], "gone.nc"),
+        (["periodic", "--seed", "-1"], "--seed"),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(
+    words: list[str], cure: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from undula.app.cli import main
+
+    assert main(["find", *words]) == 2
+    said = capsys.readouterr()
+    assert (said.out, len(said.err.splitlines())) == ("", 1)
+    assert cure in said.err
