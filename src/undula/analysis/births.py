@@ -59,18 +59,27 @@ def births(model: Model) -> tuple[Birth, ...] | NotFound:
         Its own force does not matter.
     """
     found = []
-    starts = {"flapping": flapping_start} | (
-        {"spinning": spinning_start} if model.dimension == 3 else {}
-    )
-    for kind, start_of in starts.items():
-        start = start_of(model)
-        if start is None:
-            return NotFound("the straight state stays stable, so that nothing is born")
-        birth = _birth(kind, *start)
-        if birth is None:
-            return NotFound(f"Newton's method finds no {kind} next to the Hopf point")
+    for kind in ("flapping", "spinning") if model.dimension == 3 else ("flapping",):
+        birth = birth_of(model, kind)
+        if isinstance(birth, NotFound):
+            return birth
         found.append(birth)
     return tuple(found)
+
+
+def birth_of(model: Model, kind: str) -> Birth | NotFound:
+    """Return how a kind of state is born, "spinning" or "flapping"."""
+    start = (spinning_start if kind == "spinning" else flapping_start)(model)
+    if start is None:
+        return NotFound("the straight state stays stable, so that nothing is born")
+    birth = _birth(kind, *start)
+    return birth or NotFound(f"Newton's method finds no {kind} next to the Hopf point")
+
+
+def born_downwards(model: Model, kind: str) -> bool:
+    """Tell whether a kind of state is found to be born downwards, "spinning" or "flapping"."""
+    birth = birth_of(model, kind)
+    return isinstance(birth, Birth) and not birth.supercritical
 
 
 def _birth(kind: str, problem: Problem, start: Point) -> Birth | None:

@@ -22,7 +22,45 @@ REFINEMENTS = (1, 2, 4, 8)
 # An answer is good if each quantity has this relative error, from so many numbers of links.
 _GOOD, _FEWEST = 5e-6, 3
 
+# From so many links on fewer of them tell the error as well.
+_MANY = 36
+
 S = TypeVar("S")
+
+
+def links_are_body(model: Model) -> bool:
+    """Tell whether the links of a model are its body, so that they have no limit."""
+    return model.with_links(2 * model.links) is None
+
+
+def error_of_links(
+    model: Model, value: float, again: Callable[[Model], float | None]
+) -> float | None:
+    """Return the error of a number against the body that links stand for, from others.
+
+    They are two thirds as many, or twice as many if they are few; the error falls as the square of
+    their number, which flapping shows from some 24 on.
+
+    Parameters
+    ----------
+    model : Model
+    value : float
+        The number on the links of the model.
+    again : callable
+        From the same body of other links to the number, None if it is not found.
+
+    Returns
+    -------
+    float or None
+        0 where the links are the body, None if the number is not found again.
+    """
+    links = model.links
+    other_links = 2 * links // 3 if links >= _MANY else 2 * links
+    other = model.with_links(other_links)
+    if other is None:
+        return 0.0
+    found = again(other)
+    return None if found is None else abs(found - value) / abs((links / other_links) ** 2 - 1.0)
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending
 from undula.analysis.states import Flapping, NotFound
+from undula.analysis.symmetry import require_turning
 from undula.arrays import Array, ComplexArray
 from undula.models.model import Model
 from undula.models.starts import from_state, planar
@@ -68,7 +69,13 @@ def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping
     -------
     Flapping or NotFound
         The latter says how far the search came, and what to try.
+
+    Raises
+    ------
+    InputError
+        The model has no turning symmetry.
     """
+    require_turning(model, "flapping")
     flat = model.with_(confined=True)
     first = _start_and_half_period(flat, guess)
     if isinstance(first, NotFound):

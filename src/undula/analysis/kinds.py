@@ -7,7 +7,7 @@ from typing import Any
 from undula.analysis.along import model_along, with_unknowns_of
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Family, Progress, follow_branch
-from undula.analysis.convergence import Converged, converge
+from undula.analysis.convergence import Converged, converge, error_of_links
 from undula.analysis.equilibrium import (
     Equilibrium,
     equilibrium_family,
@@ -48,8 +48,6 @@ from undula.numerics.continuation import Point, Steps, advance
 
 # A branch is stepped along in parts of the way that it is asked to go.
 _PARTS = 8.0
-# From so many links on fewer of them tell the error as well.
-_MANY = 36
 # Arclength between a Hopf point and the first point of a branch.
 _AWAY = 0.03
 
@@ -140,21 +138,19 @@ def kind_of(name: str) -> Kind:
 
 
 def with_error(state: Solved) -> Solved:
-    """Return the state with the error of its frequency against many links, if there is a limit.
+    """Return the state with the error of its frequency, of links and solver together.
 
-    The state is solved for once more with two thirds of the links, or twice as many if they are
-    few; the error falls as the square of their number, which flapping shows from some 24 on.
+    It stays without one if the state is not found with another number of links.
     """
-    links = state.model.links
-    other_links = 2 * links // 3 if links >= _MANY else 2 * links
-    other = state.model.with_links(other_links)
-    if other is None or isinstance(state, Equilibrium):
+    if isinstance(state, Equilibrium):
         return state  # what rests has no frequency
-    found = kind_named(state).find(other, state)
-    if isinstance(found, NotFound):
-        return state
-    share = abs((links / other_links) ** 2 - 1.0)
-    return replace(state, error=abs(found.frequency - state.frequency) / share)
+
+    def again(other: Model) -> float | None:
+        found = kind_named(state).find(other, state)
+        return None if isinstance(found, NotFound) else float(found.frequency)
+
+    by_links = error_of_links(state.model, state.frequency, again)
+    return state if by_links is None else replace(state, error=by_links + state.solver_error)
 
 
 def converged(

@@ -73,6 +73,9 @@ class Crossing:
         Frequency of the pair [cycles per T] and its estimated error.
     growth_slope : float
         Change of the growth rate with the force [1/T per B/L^2]; negative where a pair calms down.
+    round_off : float
+        The part of the error of the force that is not the resolution's, which of links is their
+        number [B/L^2].
     """
 
     force: float
@@ -80,6 +83,7 @@ class Crossing:
     frequency: float
     frequency_error: float
     growth_slope: float
+    round_off: float = 0.0
 
     def __str__(self) -> str:
         """Tell it in one line."""

@@ -86,7 +86,7 @@ def limit_of(known: Bifurcation[Any], parameter: str) -> Converged[Any] | NotFou
     def again(model: Model, coarser: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
         if coarser is None and model.links == first.links:
             return known
-        return found_again(coarser or known, model, parameter, lambda one: _alike(one, known))
+        return found_again(coarser or known, model, parameter, lambda one: alike(one, known))
 
     return converge(first, again, quantities_of)
 
@@ -99,5 +99,6 @@ def quantities_of(bifurcation: Bifurcation[Any]) -> dict[str, float]:
     return numbers
 
 
-def _alike(one: Bifurcation[Any], other: Bifurcation[Any]) -> bool:
+def alike(one: Bifurcation[Any], other: Bifurcation[Any]) -> bool:
+    """Tell whether two bifurcations are of one kind, and do the same to stability."""
     return (one.kind, one.loses, one.gains) == (other.kind, other.loses, other.gains)

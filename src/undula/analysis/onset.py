@@ -251,13 +251,14 @@ def _measured(
 
 def _crossing(compared: Pencil | None, factor: float, pair: CriticalPair) -> Crossing:
     by_force, by_omega = (0.0, 0.0) if compared is None else _differences(compared, pair)
-    turns, round_off = 2.0 * np.pi, pair.round_off / pair.p
+    turns, share = 2.0 * np.pi, pair.round_off / pair.p
     return Crossing(
         force=pair.p,
-        error=float(factor * by_force + round_off * pair.p),
+        error=float(factor * by_force + pair.round_off),
         frequency=pair.omega / turns,
-        frequency_error=float(factor * by_omega + round_off * pair.omega) / turns,
+        frequency_error=float(factor * by_omega + share * pair.omega) / turns,
         growth_slope=pair.slope,
+        round_off=float(pair.round_off),
     )
 
 

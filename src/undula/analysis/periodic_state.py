@@ -94,6 +94,11 @@ class Periodic:
         return abs(self.turns) / self.duration
 
     @property
+    def solver_error(self) -> float:
+        """Estimated error of the frequency on these links [cycles per T]."""
+        return self.time_error
+
+    @property
     def shape_frequency(self) -> float:
         """Repetitions of the shape per T."""
         return 1.0 / self.duration

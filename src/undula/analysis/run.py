@@ -10,6 +10,7 @@ import numpy as np
 
 from undula.analysis.arrival import Arrival
 from undula.analysis.close_up import CloseUp, close_up
+from undula.analysis.convergence import links_are_body
 from undula.analysis.finite_separation import Separation
 from undula.analysis.frequency import (
     Frequency,
@@ -243,6 +244,8 @@ class Run:
             "units": units.names(),
             "force": force,
             **({"force_in": further} if further else {}),
+            "links": self.model.links,
+            "error_of": "body" if links_are_body(self.model) else "links",
             "verdict": self.verdict.name,
             "reason": self.verdict.reason,
             "evidence": self.verdict.evidence,
@@ -271,7 +274,11 @@ class Run:
     def __str__(self) -> str:
         """One line: what it ends in, at which frequency, and how well it was computed."""
         frequency = self.frequency
-        rate = f" at {frequency.value:.6g} +- {frequency.error:.1g} /T" if frequency else ""
+        rate = ""
+        if frequency:
+            links = f"{self.model.links} links, "
+            of_links = "" if links_are_body(self.model) else links
+            rate = f" at {frequency.value:.6g} /T ({of_links}to {frequency.error:.1g})"
         return (
             f"{self.verdict.name}{rate}, {self.ending.value} at {self.motion.time[-1]:.4g} T"
             f" (power balance to {self.health.power_balance_error:.1g},"

@@ -11,6 +11,7 @@ from undula.analysis.parameters import FORCE, changed
 from undula.analysis.relative_equilibrium import TurningShape, turning_state
 from undula.analysis.run import Run
 from undula.analysis.states import NotFound, Spinning
+from undula.analysis.symmetry import require_turning
 from undula.arrays import Array, Nodes
 from undula.errors import InputError
 from undula.models.model import Model
@@ -43,9 +44,10 @@ def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning
     Raises
     ------
     InputError
-        The model is confined to a plane.
+        The model is confined to a plane, or has no turning symmetry.
     """
     require_space(model)
+    require_turning(model, "spinning")
     if guess is not None:
         return _solved_from(model, *_shape_and_rate(guess))
     coarse = model.with_links(_FEW_LINKS) if model.links > _FEW_LINKS else None

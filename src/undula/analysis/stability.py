@@ -152,6 +152,7 @@ def growth_curve(
     models = [model]
     if parameter is not None and given is not None:
         models = models_along(model, parameter, given)
+    method = method or method_for_all(models)
     rows = []
     for done, each in enumerate(models, start=1):
         rows.append(_leading(each, forces, method) / _slowness(each, paper_time))
@@ -163,7 +164,7 @@ def growth_curve(
         rates=leading[..., 0],
         frequencies=leading[..., 1] / (2.0 * np.pi),
         errors=leading[..., 2],
-        method=linearised(model, method).method,
+        method=method,
         parameter=parameter,
         values=given,
         paper_time=paper_time,
@@ -180,6 +181,8 @@ def critical_curve(
     progress: Progress | None = None,
 ) -> CriticalCurve:
     """Return the thresholds of the straight state against a parameter.
+
+    All are by one method: "discrete" if one of the models has no continuum.
 
     Parameters
     ----------
@@ -199,12 +202,18 @@ def critical_curve(
     """
     given = checked_values(values)
     models = models_along(model, parameter, given)
+    method = method or method_for_all(models)
     onsets = []
     for done, each in enumerate(models, start=1):
         onsets.append(critical_force(each, method=method, later=0, paper_time=paper_time))
         if progress:
             progress(done, len(models))
     return CriticalCurve(parameter, given, tuple(onsets))
+
+
+def method_for_all(models: Sequence[Model]) -> Method:
+    """Return the method by which the onsets of several models can be compared."""
+    return "discrete" if any(model.continuum is None for model in models) else "spectral"
 
 
 def _resolved(linearisation: Linearisation, force: float) -> Linearisation:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from undula.analysis.births import births
+from undula.analysis.births import born_downwards
 from undula.analysis.branch_records import Bifurcation, Branch
 from undula.analysis.branches import Progress, unstable
 from undula.analysis.kinds import follow, follow_from_onset
@@ -89,7 +89,7 @@ def nothing_known(kind: str, reason: str) -> Stretches:
 
 
 def straight_stretches(onset: Onset) -> Stretches:
-    """Return where the straight state is stable."""
+    """Return where the straight state of the links as they are is stable."""
     crossings = [*([onset.hopf] if onset.hopf else []), *onset.later]
     ends, growing = [0.0], 0
     for crossing in crossings:
@@ -99,7 +99,7 @@ def straight_stretches(onset: Onset) -> Stretches:
     if growing == 0:
         ends.append(np.inf)
     first = onset.hopf
-    lost = None if first is None else Change(first.force, first.error, first.frequency)
+    lost = None if first is None else Change(first.force, first.round_off, first.frequency)
     known_to = np.inf if first else onset.searched_to
     reason = None if first else str(onset)
     stable = tuple(zip(ends[::2], ends[1::2], strict=True))
@@ -162,10 +162,7 @@ def _left(branch: Branch[Any] | None, known_to: float) -> str:
 
 def _born_downwards(model: Model, kind: str, end: float) -> Branch[Any] | None:
     """Return a branch from the Hopf point on, if it goes down there and comes up to the end."""
-    found = births(model)
-    if isinstance(found, NotFound):
-        return None
-    if all(birth.supercritical for birth in found if birth.kind == kind):
+    if not born_downwards(model, kind):
         return None
     branch = follow_from_onset(model, kind, end)
     return None if isinstance(branch, NotFound) or not branch.complete else branch

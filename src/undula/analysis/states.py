@@ -108,8 +108,8 @@ class Spinning(FixedShape):
     trivial : complex
         The exponent of a turn about the axis: the one next to 0.
     error : float or None
-        Estimated error of the frequency against the body that the links stand for [turns per T],
-        None where the links are the body, or if it was not asked for.
+        Estimated error of the frequency against the body that the numbers stand for, of links and
+        solver together [turns per T]; None if it was not asked for.
     """
 
     model: Model
@@ -124,6 +124,14 @@ class Spinning(FixedShape):
     def frequency(self) -> float:
         """Turns per T."""
         return abs(self.rate) / (2.0 * np.pi)
+
+    @property
+    def solver_error(self) -> float:
+        """Estimated error of the frequency on these links [turns per T].
+
+        What is left of the equations turns the shape as the exponent does that should be 0.
+        """
+        return (self.residual * abs(self.rate) + abs(self.trivial)) / (2.0 * np.pi)
 
     @cached_property
     def power_balance_error(self) -> float:
@@ -166,8 +174,8 @@ class Flapping:
     time_error : float
         Estimated error of the frequency by the steps in time [beats per T].
     error : float or None
-        Estimated error of the frequency against the body that the links stand for, None where the
-        links are the body, or if it was not asked for.
+        Estimated error of the frequency against the body that the numbers stand for, of links and
+        steps together [beats per T]; None if it was not asked for.
     """
 
     model: Model
@@ -200,6 +208,11 @@ class Flapping:
     def frequency(self) -> float:
         """Beats per T."""
         return 1.0 / self.period
+
+    @property
+    def solver_error(self) -> float:
+        """Estimated error of the frequency on these links [beats per T]."""
+        return self.time_error
 
     @cached_property
     def energy(self) -> Range:

@@ -13,23 +13,18 @@ from typing import Any
 
 from undula.analysis.along import model_along
 from undula.analysis.branch_records import Bifurcation
-from undula.analysis.branches import Progress
-from undula.analysis.convergence import converge
+from undula.analysis.convergence import converge, error_of_links
 from undula.analysis.equilibrium import Equilibrium
-from undula.analysis.kinds import follow, kind_of
-from undula.analysis.nearby import found_again, quantities_of
+from undula.analysis.linear_results import Method, Onset
+from undula.analysis.nearby import alike, found_again, quantities_of
 from undula.analysis.parameters import FORCE, changed
-from undula.analysis.stability import critical_force
+from undula.analysis.stability import critical_force, method_for_all
 from undula.analysis.states import NotFound
-from undula.errors import InputError
+from undula.analysis.threshold_search import WANTED, Missed, search
+from undula.errors import InputError, is_number
 from undula.models.model import Model
 
-#: Forces up to which thresholds are looked for, in multiples of that of the onset.
-FARTHEST = 12.0
-# Branches of states begin a little above the onset, where their amplitude is no longer small.
-_BEGINNING = 1.02
-# Up to this force the loss of an equilibrium is looked for [B/L^2]: as far as of the tip load's.
-_FARTHEST_AT_REST = FARTHEST * 38.0
+THRESHOLDS: tuple[str, ...] = tuple(WANTED)
 
 
 @dataclass(frozen=True)
@@ -39,9 +34,12 @@ class Threshold:
     Attributes
     ----------
     kind : str
-    value, error : float or None
-        The force [B/L^2], None if there is none, and its estimated error; without convergence
-        the error is that of locating it on the links as they are.
+    value : float or None
+        The force [B/L^2]: of the body if `links` are several or none, else on these links. None if
+        there is none.
+    error : float or None
+        Its estimated error against the body that the numbers stand for, of links and solver
+        together; None if that could not be told.
     frequency : float or None
         Of the state there [cycles per T].
     second_frequency : float or None
@@ -52,6 +50,12 @@ class Threshold:
         Why there is no value.
     at : Bifurcation or None
         The bifurcation itself, on the finest links.
+    links : tuple of int
+        The numbers of links that it was solved for with; none for the method of the continuum.
+    solver_error : float or None
+        How exactly it was solved for on these links.
+    searched_to : float or None
+        The force at which the search ended without it, where a farther one might find it.
     """
 
     kind: str
@@ -62,33 +66,23 @@ class Threshold:
     bifurcation: str | None = None
     reason: str | None = None
     at: Bifurcation[Any] | None = None
+    links: tuple[int, ...] = ()
+    solver_error: float | None = None
+    searched_to: float | None = None
 
     def __str__(self) -> str:
         """Tell it in one line."""
         if self.value is None:
-            return f"no {self.kind}: {self.reason}"
+            farther = "" if self.searched_to is None else "; a larger up_to looks farther"
+            return f"no {self.kind}: {self.reason}{farther}"
+        apart = "" if self.error is None else f" +- {self.error:.1g}"
+        links = ""
+        if len(self.links) == 1 and self.error != self.solver_error:
+            links = f" ({self.links[0]} links, solved to {self.solver_error:.1g})"
         return (
-            f"{self.kind} at force {self.value:.10g} +- {self.error:.1g}, {self.bifurcation},"
+            f"{self.kind} at force {self.value:.10g}{apart}{links}, {self.bifurcation},"
             f" {self.frequency:.8g} cycles per T"
         )
-
-
-@dataclass(frozen=True)
-class _Search:
-    """Which bifurcation of which kind of state a threshold is, and what the state does there."""
-
-    kind: str
-    does: str
-    is_it: Callable[[Bifurcation[Any]], bool]
-
-
-_SEARCHES: Mapping[str, _Search] = {
-    "onset": _Search("equilibrium", "lose stability", lambda one: one.loses),
-    "spinning-lost": _Search("spinning", "lose stability", lambda one: one.loses),
-    "flapping-gained": _Search("flapping", "become stable", lambda one: one.gains),
-    "flapping-lost": _Search("flapping", "lose stability", lambda one: one.loses),
-}
-THRESHOLDS: tuple[str, ...] = tuple(_SEARCHES)
 
 
 def threshold(
@@ -97,6 +91,8 @@ def threshold(
     *,
     converged: bool = False,
     near: Threshold | None = None,
+    up_to: float | None = None,
+    method: Method | None = None,
     progress: Callable[[int, float], None] | None = None,
 ) -> Threshold:
     """Return the force at which a state gains or loses stability.
@@ -110,33 +106,42 @@ def threshold(
         Whether to extrapolate to many links.
     near : Threshold, optional
         The same threshold of a similar model, to begin at.
+    up_to : float, optional
+        The force at which the search ends [B/L^2], above 0; by default 20 times that of the onset.
+    method : {"spectral", "modes", "discrete"}, optional
+        How the onset of a straight state is computed, as in `critical_force`.
     progress : callable, optional
         Called with the number of links and each force that was reached.
 
     Raises
     ------
     InputError
-        The kind is none of these, or the model has no limit of many links.
+        The kind is none of these, the model cannot have such a state or has no limit of many links,
+        or `up_to` is out of range.
     """
     _check_kind(kind)
+    if up_to is not None and not (is_number(up_to) and up_to > 0.0):
+        raise InputError(f"up_to = {up_to!r} has to be a force above 0")
     if kind == "onset" and model.axisymmetric:
-        return _onset(model)
+        return _onset(model, method, up_to, converged=converged)
     guess = near.at if near else None
 
-    def search(finer: Model, known: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
-        return _search(
-            finer, kind, known or guess, partial(progress, finer.links) if progress else None
-        )
+    def look(finer: Model, known: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
+        told = partial(progress, finer.links) if progress else None
+        return search(finer, WANTED[kind], known or guess, up_to, told)
 
     if not converged:
-        found = search(model, None)
+        found = look(model, None)
         if isinstance(found, NotFound):
-            return Threshold(kind, None, reason=found.reason)
-        return _threshold(kind, found, _numbers(found), found.error)
-    limit = converge(model, search, _numbers)
+            return _none(kind, found)
+        by_links = _error_of_links(found, model)
+        error = None if by_links is None else by_links + found.error
+        return _threshold(kind, found, _numbers(found), error, (model.links,), found.error)
+    limit = converge(model, look, _numbers)
     if isinstance(limit, NotFound):
-        return Threshold(kind, None, reason=limit.reason)
-    return _threshold(kind, limit.finest, limit.values, limit.errors["value"])
+        return _none(kind, limit)
+    at, error = limit.finest, limit.errors["value"] + limit.finest.error
+    return _threshold(kind, at, limit.values, error, limit.links, at.error)
 
 
 def threshold_curve(
@@ -146,14 +151,18 @@ def threshold_curve(
     values: Sequence[float],
     *,
     converged: bool = False,
+    up_to: float | None = None,
     progress: Callable[[int, int], None] | None = None,
     stop: Callable[[], bool] = lambda: False,
 ) -> tuple[Threshold, ...]:
     """Return a threshold at each value of a second parameter, each begun at the one before.
 
+    All are of one kind: an onset is computed by the links at every value if the method of the
+    continuum does not hold at each, unless all are taken to the limit of many links.
+
     Parameters
     ----------
-    model, kind, converged
+    model, kind, converged, up_to
         As in `threshold`.
     parameter : str
         Name of the parameter, such as "model.drag_ratio"; the force is none.
@@ -166,12 +175,15 @@ def threshold_curve(
     if parameter == FORCE:
         raise InputError(f"thresholds are values of {FORCE}; take another parameter for a curve")
     _check_kind(kind)
-    shared = model_along(model, _SEARCHES[kind].kind, parameter, values)
+    shared = model_along(model, WANTED[kind].kind, parameter, values)
     models = [changed(shared, parameter, value) for value in values]
+    method = None if converged else method_for_all(models)
     found: list[Threshold] = []
     for done, each in enumerate(models, start=1):
         near = found[-1] if found and found[-1].value is not None else None
-        found.append(threshold(each, kind, converged=converged, near=near))
+        found.append(
+            threshold(each, kind, converged=converged, near=near, up_to=up_to, method=method)
+        )
         if progress:
             progress(done, len(models))
         if stop():
@@ -184,12 +196,59 @@ def _check_kind(kind: str) -> None:
         raise InputError(f"threshold {kind!r} is not known; take {', '.join(THRESHOLDS)}")
 
 
-def _onset(model: Model) -> Threshold:
-    onset = critical_force(model, later=0)
-    if onset.hopf is None:
-        return Threshold("onset", None, reason=str(onset))
-    hopf = onset.hopf
-    return Threshold("onset", hopf.force, hopf.error, hopf.frequency, bifurcation="Hopf")
+def _onset(
+    model: Model, method: Method | None, up_to: float | None, *, converged: bool
+) -> Threshold:
+    """Return the onset of a straight state."""
+    links: tuple[int, ...] = (model.links,)
+    if converged and model.continuum is None and model.with_links(2 * model.links) is not None:
+        limit = converge(model, lambda finer, _: _crossing_of(finer), _of_crossing)
+        if isinstance(limit, NotFound):
+            return _none("onset", limit)
+        onset, links = limit.finest, limit.links
+        force, frequency = limit.values["value"], limit.values["frequency"]
+        error = limit.errors["value"]
+    else:
+        onset = critical_force(model, method=method, later=0)
+        if onset.hopf is None:
+            return Threshold("onset", None, reason=str(onset))
+        force, frequency, error = onset.hopf.force, onset.hopf.frequency, onset.hopf.error
+    if up_to is not None and force > up_to:
+        reason = f"the straight state is stable up to force {up_to:.6g}"
+        return Threshold("onset", None, reason=reason, searched_to=up_to)
+    assert onset.hopf is not None
+    return Threshold(
+        "onset",
+        force,
+        error,
+        frequency,
+        bifurcation="Hopf",
+        links=links if onset.method == "discrete" else (),
+        solver_error=onset.hopf.round_off if onset.method == "discrete" else error,
+    )
+
+
+def _crossing_of(model: Model) -> Onset | NotFound:
+    onset = critical_force(model, method="discrete", later=0)
+    return NotFound(str(onset)) if onset.hopf is None else onset
+
+
+def _of_crossing(onset: Onset) -> dict[str, float]:
+    assert onset.hopf is not None  # others are none
+    return {"value": onset.hopf.force, "frequency": onset.hopf.frequency}
+
+
+def _none(kind: str, found: NotFound) -> Threshold:
+    searched_to = found.searched_to if isinstance(found, Missed) else None
+    return Threshold(kind, None, reason=found.reason, searched_to=searched_to)
+
+
+def _error_of_links(found: Bifurcation[Any], model: Model) -> float | None:
+    def again(other: Model) -> float | None:
+        same = found_again(found, other, FORCE, lambda one: alike(one, found))
+        return None if isinstance(same, NotFound) else same.value
+
+    return error_of_links(model, found.value, again)
 
 
 def _numbers(found: Bifurcation[Any]) -> dict[str, float]:
@@ -198,45 +257,24 @@ def _numbers(found: Bifurcation[Any]) -> dict[str, float]:
 
 
 def _threshold(
-    kind: str, at: Bifurcation[Any], numbers: Mapping[str, float], error: float
+    kind: str,
+    at: Bifurcation[Any],
+    numbers: Mapping[str, float],
+    error: float | None,
+    links: tuple[int, ...],
+    solver_error: float,
 ) -> Threshold:
     frequency, second = numbers["frequency"], numbers["second_frequency"] or None
     if isinstance(at.state, Equilibrium):
         frequency, second = second or 0.0, None  # what rests begins to swing
-    return Threshold(kind, numbers["value"], error, frequency, second, at.kind, at=at)
-
-
-def _search(
-    model: Model, kind: str, near: Bifurcation[Any] | None, progress: Progress | None
-) -> Bifurcation[Any] | NotFound:
-    search = _SEARCHES[kind]
-    if near is not None:
-        found = found_again(near, model, FORCE, search.is_it, progress)
-        if not isinstance(found, NotFound):
-            return found
-    ends = _ends(model, search.kind)
-    if isinstance(ends, NotFound):
-        return ends
-    start, end = ends
-    begun = kind_of(search.kind).find(changed(model, FORCE, start))
-    if isinstance(begun, NotFound):
-        return begun
-    branch = follow(begun, FORCE, end, progress=progress, enough=search.is_it)
-    for bifurcation in branch.bifurcations:
-        if search.is_it(bifurcation):
-            return bifurcation
-    return NotFound(
-        f"{search.kind} is {'stable' if begun.stable else 'unstable'} at force {start:.6g} and does"
-        f" not {search.does} up to {branch.values.max():.6g}"
-        + ("" if branch.complete else ", beyond which it was not followed")
+    return Threshold(
+        kind,
+        numbers["value"],
+        error,
+        frequency,
+        second,
+        at.kind,
+        at=at,
+        links=links,
+        solver_error=solver_error,
     )
-
-
-def _ends(model: Model, kind: str) -> tuple[float, float] | NotFound:
-    """Return the forces between which a kind of state is followed."""
-    if kind == "equilibrium":
-        return 0.0, _FARTHEST_AT_REST
-    onset = critical_force(model, method="discrete", later=0)
-    if onset.force is None:
-        return NotFound(str(onset))
-    return _BEGINNING * onset.force, FARTHEST * onset.force

@@ -161,7 +161,7 @@ def number_text(value: Any, error: Any = None) -> str:
     if isinstance(value, str):
         return value
     if error:
-        from undula.app.run_text import with_error
+        from undula.app.numbers_told import with_error
 
         return with_error(value, error)
     return f"{value:.6g}"

@@ -8,8 +8,13 @@ import numpy as np
 import xarray as xr
 
 from undula.analysis.borders import BORDERS, Borders
+from undula.analysis.convergence import links_are_body
 from undula.analysis.disagreements import Disagreement
 from undula.analysis.sweep_points import DONE, FAILED, verdicts_of
+from undula.app.numbers_told import BODY, LINKS
+from undula.studies.borders_store import tables_of
+from undula.studies.build import build_model
+from undula.studies.spec import parse_input
 
 # So many lines of each kind are told to people; the JSON answer has all.
 _MOST_LINES = 20
@@ -31,8 +36,12 @@ def diagram_answer(
         "verdicts": dict(Counter(str(word) for word in words[words != ""]).most_common()),
     }
     if borders is not None:
+        model = build_model(parse_input(tables_of(store)))
+        changing = borders.parameter in ("model.segments", "model.links")
         answer |= {
             "parameter": borders.parameter,
+            "links": None if changing else model.links,
+            "error_of": BODY if links_are_body(model) else LINKS,
             "borders": {name: list(_border(borders, name)) for name in BORDERS},
             "disagreements": [
                 {**one.at, "verdict": one.verdict, "near": one.near, "sentence": one.sentence}
@@ -50,6 +59,8 @@ def diagram_text(answer: Mapping[str, Any]) -> str:
     counts += [f"{missing} to go"] * bool(missing)
     lines = [answer["figure"], f"  {', '.join(counts)}"]
     lines += [f"  {count:>6} {verdict}" for verdict, count in answer["verdicts"].items()]
+    if answer.get("error_of") == LINKS and answer["links"] is not None:
+        lines.append(f"  borders of {answer['links']} links, as the runs are of")
     for name, points in answer.get("borders", {}).items():
         lines += _some(f"{name}:", list(_border_lines(points, answer["parameter"])))
     if "disagreements" in answer:

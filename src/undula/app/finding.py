@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from undula.analysis.convergence import Converged
+from undula.analysis.convergence import Converged, links_are_body
 from undula.analysis.equilibrium import Equilibrium
 from undula.analysis.kinds import Solved, converged, kind_of, with_error
 from undula.analysis.observables import Range
@@ -10,8 +10,9 @@ from undula.analysis.periodic_state import Periodic
 from undula.analysis.states import NotFound, Spinning
 from undula.app.answers import Told
 from undula.app.beginnings import Beginning
+from undula.app.numbers_told import BODY, CURE
+from undula.app.numbers_told import with_error as with_digits
 from undula.app.progress import searching
-from undula.app.run_text import with_error as with_digits
 from undula.app.units_told import force_in, units_lines
 from undula.models.units import Units
 
@@ -46,7 +47,7 @@ def find(asked: Beginning, kind: str, *, converge: bool) -> Told:
     answer = (
         _limit_answer(found) if isinstance(found, Converged) else state_answer(with_error(found))
     )
-    return Told(answer, _text(title, answer))
+    return Told(answer, _text(title, answer, body=links_are_body(model)))
 
 
 def not_found(reason: NotFound, title: str, units: Units) -> Told:
@@ -71,6 +72,8 @@ def state_answer(state: Solved) -> dict[str, Any]:
         "links": state.model.links,
         "frequency": state.frequency,
         "error": state.error,
+        "error_of": BODY,
+        "solver_error": None if isinstance(state, Equilibrium) else state.solver_error,
         "stable": state.stable,
         "leading_rate": state.leading_rate,
         "residual": state.residual,
@@ -121,7 +124,7 @@ def _limit_answer(limit: Converged[Any]) -> dict[str, Any]:
         "leading_rate": max(rates),
         "stable": max(rates) < 0.0,
         "links": list(limit.links),
-        "error": limit.errors["frequency"],
+        "error": limit.errors["frequency"] + (answer["solver_error"] or 0.0),
         "errors": dict(limit.errors),
     }
 
@@ -130,8 +133,14 @@ def _range(values: Range) -> dict[str, float]:
     return {"min": values.min, "max": values.max, "mean": values.mean}
 
 
-def _text(title: str, answer: dict[str, Any]) -> str:
-    errors = answer.get("errors", {"frequency": answer["error"]})
+def _links(links: int | list[int], *, body: bool) -> str:
+    if isinstance(links, list):
+        return f"extrapolated from {', '.join(map(str, links))}"
+    return f"{links}" if body else f"{links}; {CURE}"
+
+
+def _text(title: str, answer: dict[str, Any], *, body: bool) -> str:
+    errors = answer.get("errors", {}) | {"frequency": answer["error"]}
     word = "stable" if answer["stable"] else "unstable"
     lines = [f"{title}: {answer['kind']}, {word}", *units_lines(answer["units"])]
     known = _UNITS | {"bending_energy": answer["units"]["energy"]}
@@ -148,8 +157,6 @@ def _text(title: str, answer: dict[str, Any]) -> str:
         else:
             said = with_digits(value, errors.get(name))
         lines.append(f"  {name.replace('_', ' '):<26} {said} {unit}")
-    links = answer["links"]
-    many = f"extrapolated from {', '.join(map(str, links))}" if isinstance(links, list) else links
-    lines.append(f"  {'links':<26} {many}")
+    lines.append(f"  {'links':<26} {_links(answer['links'], body=body)}")
     lines.append(f"  {'residual':<26} {answer['residual']:.1g}")
     return "\n".join(lines)

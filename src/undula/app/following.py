@@ -6,7 +6,7 @@ from typing import Any
 
 from undula.analysis.along import model_along
 from undula.analysis.branch_records import Bifurcation, Branch
-from undula.analysis.convergence import Converged
+from undula.analysis.convergence import Converged, links_are_body
 from undula.analysis.interrupts import interruptible
 from undula.analysis.kinds import follow, follow_from_onset, kind_of
 from undula.analysis.nearby import limit_of
@@ -15,8 +15,8 @@ from undula.analysis.states import NotFound
 from undula.analysis.straight_branch import StraightBranch, follow_straight
 from undula.app.answers import Told
 from undula.app.finding import not_found, state_answer
+from undula.app.numbers_told import BODY, CURE, LINKS, told_of
 from undula.app.progress import approached
-from undula.app.run_text import with_error
 from undula.app.units_told import force_in, units_lines
 from undula.errors import InputError
 from undula.models.model import Model
@@ -146,6 +146,7 @@ def straight_answer(branch: StraightBranch, units: Units) -> dict[str, Any]:
                     "value": value,
                     branch.parameter: value,
                     "error": None,
+                    "error_of": BODY,
                     "frequency": frequency,
                     "second_frequency": None,
                 },
@@ -162,6 +163,8 @@ def _bifurcation_answer(parameter: str, one: Bifurcation[Any], *, converge: bool
         "value": one.value,
         parameter: one.value,
         "error": one.error,
+        "error_of": BODY if links_are_body(one.state.model) else LINKS,
+        "links": one.state.model.links,
         "frequency": one.frequency,
         "second_frequency": one.second_frequency,
         "stability": "lost" if one.loses else "gained" if one.gains else "unchanged",
@@ -170,7 +173,8 @@ def _bifurcation_answer(parameter: str, one: Bifurcation[Any], *, converge: bool
     if isinstance(limit, Converged):
         answer |= dict(limit.values) | {
             parameter: limit.values["value"],
-            "error": limit.errors["value"],
+            "error": limit.errors["value"] + one.error,
+            "error_of": BODY,
             "links": list(limit.links),
         }
     elif limit is not None:
@@ -203,8 +207,13 @@ def _told(answer: dict[str, Any], title: str, units: Units) -> Told:
 
 
 def _bifurcation_line(one: dict[str, Any], units: Units) -> str:
-    at = f"{one['value']:.10g}" if one["error"] is None else with_error(one["value"], one["error"])
-    at += f" {units.force}{units.beside(one['value'])}" if "force_in" in one else ""
+    further = "force_in" in one
+    unit = units.force if further else ""
+    at = f"{one['value']:.10g} {unit}".rstrip()
+    if one["error"] is not None:
+        cure = "" if "not_converged" in one else CURE
+        at = told_of(one["value"], one["error"], one, unit, cure).rstrip()
+    at += units.beside(one["value"]) if further else ""
     second = one["second_frequency"]
     beside = f", second frequency {second:.6g}" if second is not None else ""
     stability = f", stability {one['stability']}" if "stability" in one else ""

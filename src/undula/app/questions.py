@@ -163,6 +163,14 @@ def threshold(
         typer.Option(metavar="KEY=RANGE", help="Along a parameter, as model.drag_ratio=1:3:9."),
     ] = None,
     converge: Converge = False,
+    up_to: Annotated[
+        float | None,
+        typer.Option(
+            "--up-to",
+            metavar="FORCE",
+            help="Where the search ends; without it, at 20 times the force of the onset.",
+        ),
+    ] = None,
     plot: Plot = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
@@ -177,19 +185,21 @@ def threshold(
     from undula.studies.spec import read_model_input
 
     wanted = read_model_input(file, changes or ())
-    model = build_model(wanted)
+    model, end = build_model(wanted), _end_of_search(up_to)
     if along is None:
         if plot is not None:
             raise InputError("--plot draws a curve; give --along as well")
         title = wanted.tell({FORCE})
         with compilation_announced(notice):
-            told = tell_threshold(model, name, converge=converge, title=title)
+            told = tell_threshold(model, name, converge=converge, up_to=end, title=title)
         return _reply(told, None, as_json=as_json)
     axis = parse_axis("--along", along)
     with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
         title = wanted.tell({FORCE, axis[0]})
         with compilation_announced(notice):
-            told, found = tell_thresholds(model, name, axis, converge=converge, title=title)
+            told, found = tell_thresholds(
+                model, name, axis, converge=converge, up_to=end, title=title
+            )
 
         def save(path: Path) -> None:
             from undula.app.drawing import draw_thresholds
@@ -234,6 +244,14 @@ def _ended(told: "Told") -> int:
         return DONE
     notice("interrupted; what was found until then is told, the same command begins anew")
     return STOPPED_EARLY
+
+
+def _end_of_search(up_to: float | None) -> float | None:
+    """Return the force at which a search is to end, having refused what is none."""
+    # Written so that NaN, too, is refused.
+    if up_to is not None and not 0.0 < up_to < float("inf"):
+        raise InputError(f"--up-to {up_to} is out of range; give a finite force above 0")
+    return up_to
 
 
 def _with_figure(told: "Told", figure: Path | None) -> "Told":

@@ -1,13 +1,16 @@
 """The answer of a run for people: a few aligned lines."""
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from undula.app.numbers_told import BODY, told_of
 from undula.app.pace import duration
 from undula.app.units_told import units_lines
 
 Answer = Mapping[str, Any]
+
+#: Which solved state is what a run of a verdict ends in.
+_CONVERGED = {"spinning": "spinning", "planar flapping": "flapping"}
 
 
 def run_text(answer: Answer) -> str:
@@ -34,6 +37,7 @@ def _lines(answer: Answer) -> Iterator[tuple[str, str]]:
     yield "bending energy", _span(answer["bending_energy"], answer["units"]["energy"])
     yield "tip radius", _span(answer["tip_radius"], "L")
     yield "tip height", _span(answer["tip_height"], "L")
+    yield "links", _links(answer)
     yield "health", _health(answer)
     yield "result", answer["output"]
     yield "figure", answer["figure"] or "none"
@@ -54,7 +58,7 @@ def _frequency(answer: Answer, name: str) -> str:
     value, error = answer[name], answer[f"{name}_error"]
     if value is None:
         return ""
-    return f"{with_error(value, error)} cycles per T"
+    return told_of(value, error, answer, "cycles per T")
 
 
 def _lyapunov(answer: Answer) -> str:
@@ -62,21 +66,23 @@ def _lyapunov(answer: Answer) -> str:
     found = answer["lyapunov"]
     if found is None:
         return f"none: {answer['without_lyapunov']}" if answer["without_lyapunov"] else ""
-    beyond = with_error(found["beyond_symmetry"], found["beyond_symmetry_error"])
-    told = f"{with_error(found['value'], found['error'])} /T, {beyond} /T symmetry aside"
+    beyond = told_of(found["beyond_symmetry"], found["beyond_symmetry_error"], answer, "/T")
+    told = f"{told_of(found['value'], found['error'], answer, '/T')}, {beyond} symmetry aside"
     pairs = found["finite_separation"]
-    return f"{told}; runs part at {with_error(pairs['rate'], pairs['error'])} /T" if pairs else told
+    if not pairs:
+        return told
+    return f"{told}; runs part at {told_of(pairs['rate'], pairs['error'], answer, '/T')}"
 
 
-def with_error(value: float, error: float | None) -> str:
-    """Return a number to the digits that its error leaves, and the error with one digit."""
-    if error is None or not math.isfinite(error) or error <= 0.0:
-        return f"{value:.6g}"
-    # Twelve decimals are more than any run is good for.
-    decimals = min(12, max(0, -math.floor(math.log10(error))))
-    spread = f"{error:.1g}" if error < 1.0 else f"{error:.0f}"
-    # A value within its error is told as the nought that it may be.
-    return f"{value:.{decimals}f} ± {spread}" if abs(value) > error else f"0 ± {spread}"
+def _links(answer: Answer) -> str:
+    """Tell on how many links the numbers hold, and what takes them to the filament."""
+    count = str(answer["links"])
+    if answer["error_of"] == BODY:
+        return count
+    kind = _CONVERGED.get(answer["verdict"])
+    if kind is not None:
+        return f"{count}; `undula find {kind} --converge` gives the filament's"
+    return f"{count}; a run with more model.segments tells how much that matters"
 
 
 def _span(values: Mapping[str, float], unit: str) -> str:

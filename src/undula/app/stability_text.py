@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from undula.analysis.linear_results import CriticalCurve, Crossing, GrowthCurve, Onset, Spectrum
-from undula.app.run_text import with_error
+from undula.app.numbers_told import with_error
 from undula.app.units_told import units_lines
 from undula.models.units import Units
 
@@ -38,7 +38,10 @@ def growth_text(title: str, growth: GrowthCurve, units: Units) -> str:
         ("error", [f"{growth.errors[at]:.1g}" for at in places]),
     ]
     unit = _TIME[growth.paper_time]
-    head = f"{title}: leading eigenvalue, rates per {unit}, frequencies in cycles per {unit}"
+    head = (
+        f"{title}: leading eigenvalue, rates per {unit}, frequencies in cycles per {unit}, method"
+        f" {growth.method}"
+    )
     return "\n".join([head, *units_lines(units.names()), _table(columns)])
 
 
@@ -57,7 +60,7 @@ def thresholds_text(title: str, curve: CriticalCurve, units: Sequence[Units]) ->
     ]
     head = (
         f"{title}: thresholds of the straight state in {first.force}, frequencies in cycles per"
-        f" {unit}"
+        f" {unit}, method {curve.method}"
     )
     return "\n".join([head, *units_lines(first.names(), first.forces), _table(columns)])
 

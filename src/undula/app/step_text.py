@@ -15,8 +15,8 @@ from undula.analysis.regime_changes import (
 )
 from undula.analysis.settle_and_step import Step
 from undula.analysis.thresholds import Threshold
-from undula.app.run_text import with_error
-from undula.app.units_told import force_in, units_lines
+from undula.app.thresholding import force_told, links_told, threshold_answer
+from undula.app.units_told import units_lines
 from undula.models.units import Units
 from undula.studies.steps_store import Series
 
@@ -79,13 +79,7 @@ def _threshold(found: Threshold, changes: Sequence[RegimeChange], units: Units) 
     beside = None if found.value is None else nearest(changes, found.value)
     return {
         "threshold": found.kind,
-        "value": found.value,
-        **force_in(units, found.value),
-        "error": found.error,
-        "frequency": found.frequency,
-        "second_frequency": found.second_frequency,
-        "bifurcation": found.bifurcation,
-        "reason": found.reason,
+        **threshold_answer(found, units),
         "nearest_change": None if beside is None else asdict(beside),
     }
 
@@ -116,8 +110,7 @@ def _span(start: float, end: float) -> str:
 def _beside(found: Answer, units: Units) -> str:
     if found["value"] is None:
         return f"none: {found['reason']}"
-    value = f"{with_error(found['value'], found['error'])} {units.force}"
-    said = f"{value}{units.beside(found['value'])} ({found['bifurcation']})"
+    said = f"{force_told(found, units)} ({found['bifurcation']}){links_told(found)}"
     change = found["nearest_change"]
     if change is None:
         return f"{said}; no change of regime to compare with"

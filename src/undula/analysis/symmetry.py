@@ -1,0 +1,26 @@
+"""Which motions a body can have by its symmetry."""
+
+from undula.errors import InputError
+from undula.models.model import Model
+
+
+def require_turning(model: Model, kind: str) -> None:
+    """Refuse a body that turns about its axis do not leave as it is.
+
+    Parameters
+    ----------
+    model : Model
+    kind : {"spinning", "flapping"}
+        A state that only bodies with this symmetry have.
+
+    Raises
+    ------
+    InputError
+        It has no such symmetry.
+    """
+    if not model.axisymmetric:
+        raise InputError(
+            f"this filament has no turning symmetry, which {kind} takes, as it is curved by nature"
+            " or bends more easily one way: use natural_curvature = (0, 0) and bending_ratio = 1,"
+            " or ask for its equilibrium, its threshold onset, or a periodic motion"
+        )
