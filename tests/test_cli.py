@@ -17,8 +17,8 @@ import pytest
 from undula.analysis.schedule import Schedule
 from undula.app.answers import finite
 from undula.app.cli import main
-from undula.app.pace import duration
 from undula.app.numbers_told import with_error
+from undula.app.pace import duration
 from undula.studies.store import load_checkpoint, load_result
 from undula.views import movie
 

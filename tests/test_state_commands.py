@@ -17,12 +17,20 @@ FEW = ["--set", "model.segments=8"]
 CONFINED = ["--set", "model.confined=true"]
 STATE = {
     *("status", "kind", "units", "force", "links", "frequency", "error", "stable"),
+    *("error_of", "solver_error"),
     "leading_rate",
     *("bending_energy", "tip_radius", "tip_height", "residual", "power_balance_error"),
 }
 RANGE = {"min", "max", "mean"}
-BIFURCATION = {"kind", "value", "load.force", "error", "frequency", "second_frequency"}
-THRESHOLD = {"value", "error", "frequency", "second_frequency", "bifurcation", "reason"}
+BIFURCATION = {
+    *("kind", "value", "load.force", "error", "error_of", "links"),
+    *("frequency", "second_frequency"),
+}
+THRESHOLD = {
+    *("value", "error", "solver_error", "frequency", "second_frequency", "bifurcation"),
+    *("reason", "searched_to"),
+}
+OF = {"error_of", "links"}
 
 
 @pytest.fixture(autouse=True)
@@ -304,6 +312,8 @@ def test_a_threshold_is_answered_with_what_python_computes(name: str, ask: Ask) 
         "units": EIGHT.units.names(),
         "threshold": name,
         "figure": None,
+        "error_of": "body",
+        "links": None if name == "onset" else 8,
         **{key: getattr(single, key) for key in THRESHOLD},
     }
     assert found["value"] is not None
@@ -316,20 +326,21 @@ def test_a_threshold_along_a_parameter_is_a_list(ask: Ask) -> None:
     assert found.keys() == {"status", "units", "threshold", "parameter", "thresholds", "figure"}
     assert [one["model.drag_ratio"] for one in found["thresholds"]] == [1.8, 2.0]
     for one in found["thresholds"]:
-        assert one.keys() == THRESHOLD | {"model.drag_ratio"}
+        assert one.keys() == THRESHOLD | OF | {"model.drag_ratio"}
     single = un.threshold(EIGHT, "spinning-lost")
     assert found["thresholds"][1]["value"] == pytest.approx(single.value, abs=1e-6)
 
 
 def test_no_threshold_is_an_answer_with_a_reason(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("undula.analysis.thresholds.FARTHEST", 1.2)
+    monkeypatch.setattr("undula.analysis.threshold_search.FARTHEST", 1.2)
     found = answer(ask("threshold", "spinning-lost", *FEW, "--json"))
-    for key in THRESHOLD - {"reason"}:
+    for key in THRESHOLD - {"reason", "searched_to"}:
         assert found[key] is None, key
-    assert found["reason"].startswith("spinning is stable at force ")
+    assert found["reason"].startswith("spinning is stable from force ")
+    assert found["reason"].endswith(f" up to force {found['searched_to']:.6g}")
     status, said, _ = ask("threshold", "spinning-lost", *FEW)
     assert status == 0
-    assert said == f"tip load: spinning-lost none: {found['reason']}\n"
+    assert said == (f"tip load: spinning-lost none: {found['reason']}; --up-to looks farther\n")
     # A curve of none is drawn too.
     words = ["--along", "model.drag_ratio=2,3", "--plot", "none.png"]
     drawn = answer(ask("threshold", "spinning-lost", *FEW, *words, "--json"))

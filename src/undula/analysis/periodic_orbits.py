@@ -17,8 +17,8 @@ from undula.analysis.branches import Family, Progress, UnresolvedError, follow_b
 from undula.analysis.flapping import INTERVALS, METHOD, flapping_unknowns, in_space
 from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.periodic_state import Periodic
-from undula.analysis.spinning import require_space
 from undula.analysis.states import Flapping
+from undula.analysis.symmetry import require_space
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model

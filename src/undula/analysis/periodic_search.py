@@ -15,8 +15,8 @@ from undula.analysis.periodic_state import Periodic
 from undula.analysis.returns import RECURRENT
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending
-from undula.analysis.spinning import require_space
 from undula.analysis.states import NotFound
+from undula.analysis.symmetry import require_space
 from undula.arrays import Nodes
 from undula.errors import InputError
 from undula.models.model import Model

@@ -11,9 +11,8 @@ from undula.analysis.parameters import FORCE, changed
 from undula.analysis.relative_equilibrium import TurningShape, turning_state
 from undula.analysis.run import Run
 from undula.analysis.states import NotFound, Spinning
-from undula.analysis.symmetry import require_turning
+from undula.analysis.symmetry import require_space, require_turning
 from undula.arrays import Array, Nodes
-from undula.errors import InputError
 from undula.models.model import Model
 from undula.models.starts import from_state
 from undula.numerics.continuation import Point, Steps, follow, located, solved_at
@@ -58,12 +57,6 @@ def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning
             if not isinstance(found, NotFound):
                 return found
     return _followed(model)
-
-
-def require_space(model: Model) -> None:
-    """Refuse a model that is confined to a plane."""
-    if model.dimension != 3:
-        raise InputError("a confined model cannot spin; set confined = false")
 
 
 def spinning_start(model: Model) -> tuple[TurningShape, Point] | None:

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 from undula.analysis.along import model_along
 from undula.analysis.parameters import changed, value_of
-from undula.analysis.stability import spectrum
+from undula.analysis.stability import method_for_all, spectrum
 from undula.arrays import Array
 from undula.models.model import Model
 
@@ -29,6 +29,8 @@ class StraightBranch:
         Of the leading disturbance [1/T] and [cycles per T].
     hopf : tuple of (float, float)
         Values at which a pair crosses the imaginary axis, and its frequency [cycles per T].
+    links : int or None
+        The number of links that all this is of; None for the method of the continuum.
     """
 
     parameter: str
@@ -36,6 +38,7 @@ class StraightBranch:
     rates: Array
     frequencies: Array
     hopf: tuple[tuple[float, float], ...]
+    links: int | None = None
 
 
 def follow_straight(model: Model, parameter: str, start: float, to: float) -> StraightBranch:
@@ -48,9 +51,10 @@ def follow_straight(model: Model, parameter: str, start: float, to: float) -> St
     """
     value_of(model, parameter)
     model_along(model, "straight", parameter, (start, to))
+    method = method_for_all([changed(model, parameter, value) for value in (start, to)])
 
     def leading(value: float) -> complex:
-        return complex(spectrum(changed(model, parameter, value), count=1).values[0])
+        return complex(spectrum(changed(model, parameter, value), count=1, method=method).values[0])
 
     values = np.linspace(start, to, _POINTS)
     found = np.array([leading(value) for value in values])
@@ -60,4 +64,5 @@ def follow_straight(model: Model, parameter: str, start: float, to: float) -> St
         at = float(brentq(lambda v: leading(v).real, values[k], values[k + 1], xtol=1e-13))
         hopf.append((at, abs(leading(at).imag) / (2.0 * np.pi)))
     frequencies = np.abs(found.imag) / (2.0 * np.pi)
-    return StraightBranch(parameter, values, found.real, frequencies, tuple(hopf))
+    links = model.links if method == "discrete" else None
+    return StraightBranch(parameter, values, found.real, frequencies, tuple(hopf), links)

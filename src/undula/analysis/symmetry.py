@@ -4,6 +4,18 @@ from undula.errors import InputError
 from undula.models.model import Model
 
 
+def require_space(model: Model) -> None:
+    """Refuse a model that is confined to a plane.
+
+    Raises
+    ------
+    InputError
+        It is.
+    """
+    if model.dimension != 3:
+        raise InputError("a confined model cannot spin; set confined = false")
+
+
 def require_turning(model: Model, kind: str) -> None:
     """Refuse a body that turns about its axis do not leave as it is.
 

@@ -17,7 +17,7 @@ from undula.analysis.nearby import found_again
 from undula.analysis.parameters import FORCE, changed
 from undula.analysis.stability import critical_force
 from undula.analysis.states import NotFound
-from undula.analysis.symmetry import require_turning
+from undula.analysis.symmetry import require_space, require_turning
 from undula.models.model import Model
 
 #: Forces up to which thresholds are looked for by default, in multiples of that of the onset.
@@ -105,6 +105,8 @@ def check(model: Model, wanted: Wanted) -> None:
     """Refuse a model that cannot have the states of a threshold."""
     if wanted.kind != "equilibrium":
         require_turning(model, wanted.kind)
+    if wanted.kind == "spinning":
+        require_space(model)
 
 
 def _ends(model: Model, kind: str, up_to: float | None) -> tuple[float, float] | NotFound:

@@ -120,12 +120,13 @@ def _limit_answer(limit: Converged[Any]) -> dict[str, Any]:
         else:
             answer[name] = value
     rates = [value for name, value in limit.values.items() if name.startswith("leading_rate")]
+    error = limit.errors["frequency"] + (answer["solver_error"] or 0.0)
     return answer | {
         "leading_rate": max(rates),
         "stable": max(rates) < 0.0,
         "links": list(limit.links),
-        "error": limit.errors["frequency"] + (answer["solver_error"] or 0.0),
-        "errors": dict(limit.errors),
+        "error": error,
+        "errors": {**limit.errors, "frequency": error},
     }
 
 

@@ -79,7 +79,7 @@ def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[To
     if way.start is None:
         raise InputError("the straight state ends at its onset; give a number to start at")
     straight = follow_straight(model, way.parameter, way.start, way.end)
-    answer = straight_answer(straight, model.units)
+    answer = straight_answer(straight, model)
     return _told(answer, f"{title}: straight state", model.units), straight
 
 
@@ -123,8 +123,9 @@ def branch_answer(branch: Branch[Any], units: Units, *, converge: bool) -> dict[
     }
 
 
-def straight_answer(branch: StraightBranch, units: Units) -> dict[str, Any]:
-    """Return the straight state along a parameter in plain JSON types."""
+def straight_answer(branch: StraightBranch, model: Model) -> dict[str, Any]:
+    """Return the straight state of a model along a parameter in plain JSON types."""
+    units, of_body = model.units, branch.links is None or links_are_body(model)
     columns = zip(branch.values, branch.rates, branch.frequencies, strict=True)
     return {
         "status": "done",
@@ -146,7 +147,8 @@ def straight_answer(branch: StraightBranch, units: Units) -> dict[str, Any]:
                     "value": value,
                     branch.parameter: value,
                     "error": None,
-                    "error_of": BODY,
+                    "error_of": BODY if of_body else LINKS,
+                    "links": branch.links,
                     "frequency": frequency,
                     "second_frequency": None,
                 },
@@ -210,7 +212,7 @@ def _bifurcation_line(one: dict[str, Any], units: Units) -> str:
     further = "force_in" in one
     unit = units.force if further else ""
     at = f"{one['value']:.10g} {unit}".rstrip()
-    if one["error"] is not None:
+    if one["error"] is not None or one["error_of"] == LINKS:
         cure = "" if "not_converged" in one else CURE
         at = told_of(one["value"], one["error"], one, unit, cure).rstrip()
     at += units.beside(one["value"]) if further else ""

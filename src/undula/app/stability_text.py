@@ -59,8 +59,8 @@ def thresholds_text(title: str, curve: CriticalCurve, units: Sequence[Units]) ->
         ("growth slope", [_number(slope, 6) for slope in curve.growth_slopes]),
     ]
     head = (
-        f"{title}: thresholds of the straight state in {first.force}, frequencies in cycles per"
-        f" {unit}, method {curve.method}"
+        f"{title}: thresholds of the straight state in {first.force} and cycles per {unit}, method"
+        f" {curve.method}"
     )
     return "\n".join([head, *units_lines(first.names(), first.forces), _table(columns)])
 
