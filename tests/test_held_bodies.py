@@ -189,7 +189,7 @@ def test_a_run_that_does_not_repeat_itself_gives_no_orbit() -> None:
 REFUSED = {
     "is straight at rest": lambda: find_equilibrium(curved(20.0, (0.0, 0.0))),
     "natural_curvature = (0, 0)": lambda: un.find_spinning(curved(100.0)),
-    "confined = False": lambda: un.find_flapping(curved(100.0)),
+    "has no turning symmetry": lambda: un.find_flapping(curved(100.0)),
     "periodic motions begin where others": lambda: un.follow_from_onset(
         curved(1.0), "periodic", 50.0
     ),

@@ -225,7 +225,7 @@ def test_a_run_that_ends_straight_says_why_it_has_no_exponents(
     told = answer(capsys, tmp_path, "load.force=15", "time.until=0.5")
     assert told["verdict"] == "straight"
     assert told["lyapunov"] is None
-    assert "ask undula stability" in told["without_lyapunov"]
+    assert "ask for its spectrum" in told["without_lyapunov"]
 
 
 def test_a_motion_that_cannot_be_followed_is_a_value_with_advice(

@@ -53,8 +53,8 @@ def test_a_threshold_is_where_the_leading_rate_of_the_state_changes_its_sign(
     kind: str, find: Callable[..., Spinning | Flapping | NotFound], before: bool
 ) -> None:
     found = of_eight(kind)
-    assert found.error is not None
-    assert found.error < 1e-6
+    assert found.solver_error is not None
+    assert found.solver_error < 1e-6
     below, at, above = (
         find(EIGHT.with_(force=share * value_of(found))) for share in (0.999, 1.0, 1.001)
     )
@@ -137,7 +137,12 @@ def test_a_curve_goes_on_beyond_a_value_without_a_threshold(
     asked = []
 
     def fake(
-        model: un.Filament, kind: str, *, converged: bool, near: Threshold | None
+        model: un.Filament,
+        kind: str,
+        *,
+        converged: bool,
+        near: Threshold | None,
+        **_: object,
     ) -> Threshold:
         asked.append(near)
         ratio = model.drag_ratio

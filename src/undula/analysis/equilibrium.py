@@ -173,8 +173,8 @@ def equilibrium_start(model: Model) -> tuple[RestingShape, Point]:
 def _require_directors(model: Model) -> None:
     if model.axisymmetric:
         raise InputError(
-            "a filament without natural curvature is straight at rest: ask undula stability, or"
-            " undula follow straight"
+            "a filament without natural curvature is straight at rest: ask for its spectrum or its"
+            " critical force, or follow the straight state"
         )
 
 

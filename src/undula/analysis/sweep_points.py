@@ -28,8 +28,8 @@ def axes_of(store: xr.Dataset) -> tuple[str, ...]:
     missing = [name for name in _NEEDED if name not in store]
     if missing or TRY not in store["status"].dims:
         raise InputError(
-            f"the store lacks {', '.join(missing) or f'the dimension {TRY}'}; give one that `undula"
-            " sweep` has made"
+            f"the store lacks {', '.join(missing) or f'the dimension {TRY}'}; give one that a"
+            " sweep has made"
         )
     return tuple(str(name) for name in store["status"].dims if name != TRY)
 

@@ -94,7 +94,7 @@ def search(
     for branch in _branches(model, wanted, ends, progress):
         if isinstance(branch, NotFound):
             return branch
-        seen = seen.beyond(branch)
+        seen = seen.beyond(branch, ends[1])
         for bifurcation in branch.bifurcations:
             if wanted.is_it(bifurcation) and bifurcation.value <= ends[1]:
                 return bifurcation
@@ -130,12 +130,14 @@ def _branches(
             yield born
             return
         yield born
-        if not born.complete:
+        if not born.complete or end <= start:
             return
-    if end <= start:
-        yield NotFound(
-            f"{wanted.kind} begins at the onset, at force {start / _BEGINNING:.6g}, and the search"
-            f" was to end at {end:.6g}; search farther"
+    elif end <= start:
+        onset = start / _BEGINNING
+        yield Missed(
+            f"{wanted.kind} begins at the onset, at force {onset:.6g}, beyond which was not"
+            " searched",
+            searched_to=end,
         )
         return
     state: Solved | NotFound = kind_of(wanted.kind).find(changed(model, FORCE, start))
@@ -171,17 +173,21 @@ class _Seen:
     reached: float | None = None
     complete: bool = True
 
-    def beyond(self, branch: Branch[Any]) -> "_Seen":
-        """Return this with what a further piece of the branch shows."""
+    def beyond(self, branch: Branch[Any], end: float) -> "_Seen":
+        """Return this with what a further piece of the branch shows up to a force."""
         folds = [one.value for one in branch.bifurcations if one.kind == "fold"]
-        changes = [one.value for one in branch.bifurcations if one.gains or one.loses]
+        changes = [
+            one.value
+            for one in branch.bifurcations
+            if (one.gains or one.loses) and one.value <= end
+        ]
         first = self.reached is None
         return _Seen(
             kind=self.kind,
             begins=min([float(branch.values[0]), *folds]) if first else self.begins,
             stable=branch.states[0].stable if first else self.stable,
             changed_at=next(iter(changes), None) if self.changed_at is None else self.changed_at,
-            reached=max(float(branch.values.max()), self.reached or 0.0),
+            reached=min(end, max(float(branch.values.max()), self.reached or 0.0)),
             complete=branch.complete,
         )
 

@@ -223,7 +223,7 @@ def chosen(items: dict[str, Item], names: tuple[str, ...]) -> dict[str, Item]:
     for name in names:
         if name not in items:
             meant = nearest(name, items)
-            cure = f"did you mean {meant}?" if meant else "`undula reproduce --list` names them"
+            cure = f"did you mean {meant}?" if meant else f"take {', '.join(items)}"
             raise InputError(f"there is no item {name} to reproduce; {cure}")
     return {name: item for name, item in items.items() if not names or name in names}
 
