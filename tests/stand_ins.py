@@ -86,6 +86,7 @@ BEGINNINGS = {
     "undula.app.jobs.take_up": _begins,
     "undula.app.stepping.step_along": _begins,
     "undula.app.stability.ask": _asks,
+    "undula.app.beginnings.load_result": _begins,
     "undula.app.finding.find": _finds,
     "undula.app.following.follow_along": _follows,
     "undula.app.thresholding.tell_threshold": _tells,
