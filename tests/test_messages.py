@@ -12,8 +12,12 @@ import undula
 SOURCE = Path(undula.__file__).parent
 #: Rooms that know nothing of the command line.
 ROOMS = ("analysis", "models", "numerics")
-#: Of the studies these read what is typed, or files that commands make.
-TYPED = {"overrides", "spec", "store", "steps_store", "study_store", "whole_file", "borders_store"}
+#: Of the studies those that read nothing that is typed and no file that a command makes.
+PURE = (
+    *("build", "blocks", "claims", "complaints", "differences", "items", "measures"),
+    *("model_tables", "point", "ranges", "slips", "strict_table", "study", "study_columns"),
+    *("study_measures", "study_tables", "tables"),
+)
 COMMANDS = (
     *("run", "resume", "plot", "stability", "find", "follow", "threshold", "step", "sweep"),
     *("status", "reproduce", "units", "movie"),
@@ -22,7 +26,7 @@ NAMED = re.compile(rf"\bundula ({'|'.join(COMMANDS)})\b|(?<![\w-])--[a-z]")
 
 
 def modules() -> list[Path]:
-    studies = [path for path in (SOURCE / "studies").glob("*.py") if path.stem not in TYPED]
+    studies = [SOURCE / "studies" / f"{name}.py" for name in PURE]
     return sorted([*(path for room in ROOMS for path in (SOURCE / room).glob("*.py")), *studies])
 
 

@@ -223,9 +223,8 @@ def _believed(onset: Onset) -> Onset:
     return replace(onset, hopf=hopf, later=tuple(known[1:]), searched_to=searched_to)
 
 
-def _is_believed(crossing: Crossing) -> bool:
-    by_frequency = crossing.frequency_error / crossing.frequency
-    return max(crossing.error / crossing.force, by_frequency) < _BELIEVED
+def _is_believed(one: Crossing) -> bool:
+    return max(one.error / one.force, one.frequency_error / one.frequency) < _BELIEVED
 
 
 def _measured(
