@@ -214,7 +214,7 @@ def _odd(files: Files) -> Mapping[str, st.SearchStrategy[str]]:
         "scheduler": st.sampled_from(("nowhere", "tcp://", "127.0.0.1:1", "tcp://127.0.0.1:99999")),
         "names": st.sampled_from(("missing-item", *JUNK)),
         **dict.fromkeys(
-            ("file", "out", "result", "store", "plot", "runs", "catalogue"), files.paths
+            ("file", "out", "result", "store", "plot", "run", "runs", "catalogue"), files.paths
         ),
     }
 
