@@ -40,7 +40,7 @@ LENGTHS = (1, 8)
 WATCHED = 1.0 / 15.0
 _STRAIGHT_HAS = (
     "a motion that ends straight has the eigenvalues of the straight state for exponents: ask"
-    " undula stability"
+    " for its spectrum"
 )
 
 
