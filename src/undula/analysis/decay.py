@@ -83,7 +83,7 @@ def linear_motion(time: Instants, nodes: Shapes) -> LinearMotion | None:
     if not moved:
         return None
     lag = max(1, int(LAG_SHARE * len(time) / (crossings + 1)))
-    apart = -(-(along.shape[1] - 1) // NODES)
+    apart = -(-(nodes.shape[1] - 1) // NODES)
     logs, phases = _leading_amplitude(np.ascontiguousarray(along[:, :0:-apart]), lag)
     clock = np.ascontiguousarray(time[: len(logs)])
     half = len(clock) // 2
