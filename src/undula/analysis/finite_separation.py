@@ -65,6 +65,10 @@ class Separation:
     time: Instants
     distance: Array
 
+    def told(self) -> dict[str, float]:
+        """Return its figures in plain JSON types."""
+        return {"rate": self.rate, "error": self.error, "saturated": self.saturated}
+
 
 def finite_separation(
     model: Model,

@@ -7,6 +7,7 @@ chaotic.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -73,6 +74,19 @@ class Lyapunov:
     def beyond_symmetry_error(self) -> float:
         """Its error [1/T]."""
         return float(self.errors[self._others[0]])
+
+    def told(self) -> dict[str, Any]:
+        """Return all of it in plain JSON types."""
+        return {
+            "value": self.value,
+            "error": self.error,
+            "beyond_symmetry": self.beyond_symmetry,
+            "beyond_symmetry_error": self.beyond_symmetry_error,
+            "exponents": self.exponents.tolist(),
+            "errors": self.errors.tolist(),
+            "symmetries": self.symmetries,
+            "duration": self.duration,
+        }
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from undula.analysis.health import Errors, Health, errors_of, health_of
 from undula.analysis.judging import Exponents, Judged, Watch, failed, judge
 from undula.analysis.lyapunov import Lyapunov
 from undula.analysis.motion import Motion
-from undula.analysis.observables import Range, envelope, tip_height, tip_radius, winding_angle
+from undula.analysis.observables import envelope, tip_height, tip_radius, winding_angle
 from undula.analysis.planes import planarity
 from undula.analysis.precession import Precession, precession
 from undula.analysis.regimes import STRAIGHT, Verdict
@@ -221,15 +221,12 @@ class Run:
         late = self.window
         shape = self.verdict.evidence.get("planarity")
         return {
-            "frequency": _value(self.frequency),
-            "frequency_error": _error(self.frequency),
-            "rotation_frequency": _value(self.rotation_frequency),
-            "rotation_frequency_error": _error(self.rotation_frequency),
-            "shape_frequency": _value(self.shape_frequency),
-            "shape_frequency_error": _error(self.shape_frequency),
-            "bending_energy": _range(envelope(late.energetics.bending_energy)),
-            "tip_radius": _range(envelope(tip_radius(late.nodes))),
-            "tip_height": _range(envelope(tip_height(late.nodes))),
+            **_told("frequency", self.frequency),
+            **_told("rotation_frequency", self.rotation_frequency),
+            **_told("shape_frequency", self.shape_frequency),
+            "bending_energy": asdict(envelope(late.energetics.bending_energy)),
+            "tip_radius": asdict(envelope(tip_radius(late.nodes))),
+            "tip_height": asdict(envelope(tip_height(late.nodes))),
             "planarity": planarity(late.nodes) if shape is None else shape,
         }
 
@@ -251,7 +248,7 @@ class Run:
             "evidence": self.verdict.evidence,
             "margin": self.verdict.margin,
             "longer": self.verdict.longer,
-            "lyapunov": _exponents(self.lyapunov, self.separation),
+            "lyapunov": self._exponents(),
             "without_lyapunov": self.without_lyapunov or None,
             **self.figures(),
             "winding_angle": float(winding_angle(self.motion.nodes)[-1]),
@@ -264,6 +261,12 @@ class Run:
             "tight_from": self.tight_from,
             **asdict(self.health),
         }
+
+    def _exponents(self) -> dict[str, Any] | None:
+        if self.lyapunov is None:
+            return None
+        parting = self.separation and self.separation.told()
+        return {**self.lyapunov.told(), "finite_separation": parting}
 
     def _precession(self) -> dict[str, float] | None:
         """Return how a body that is held in one direction goes round, which others do evenly."""
@@ -291,30 +294,6 @@ def _seen(settled: Settled | None, time: float) -> Settled | None:
     return settled and replace(settled, since=min(settled.since, time))
 
 
-def _exponents(found: Lyapunov | None, pairs: Separation | None) -> dict[str, Any] | None:
-    if found is None:
-        return None
-    parting = pairs and {"rate": pairs.rate, "error": pairs.error, "saturated": pairs.saturated}
-    return {
-        "value": found.value,
-        "error": found.error,
-        "beyond_symmetry": found.beyond_symmetry,
-        "beyond_symmetry_error": found.beyond_symmetry_error,
-        "exponents": found.exponents.tolist(),
-        "errors": found.errors.tolist(),
-        "symmetries": found.symmetries,
-        "duration": found.duration,
-        "finite_separation": parting,
-    }
-
-
-def _range(values: Range) -> dict[str, float]:
-    return {"min": values.min, "max": values.max, "mean": values.mean}
-
-
-def _value(frequency: Frequency | None) -> float | None:
-    return None if frequency is None else float(frequency.value)
-
-
-def _error(frequency: Frequency | None) -> float | None:
-    return None if frequency is None else float(frequency.error)
+def _told(name: str, found: Frequency | None) -> dict[str, float | None]:
+    value, error = (None, None) if found is None else (float(found.value), float(found.error))
+    return {name: value, f"{name}_error": error}
