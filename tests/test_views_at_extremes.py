@@ -204,7 +204,7 @@ OTHERWISE = {
 }
 
 
-@pytest.mark.parametrize("key", ModelTable.model_fields.keys() - {"segments"})
+@pytest.mark.parametrize("key", sorted(ModelTable.model_fields.keys() - {"segments"}))
 def test_words_tell_every_key_of_the_model_that_departs_from_its_default(key: str) -> None:
     value, needed = OTHERWISE[key]
     plain = parse_input({"model": needed})
