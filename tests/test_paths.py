@@ -34,6 +34,7 @@ COMMANDS = [
     "stability {}",
     "stability --plot {}",
     "find spinning {}",
+    "find periodic --run {}",
     "follow spinning {} --along load.force=50:60",
     "follow spinning --along load.force=50:60 --plot {}",
     "follow spinning --along load.force=50:60 --plot new.png --run {}",

@@ -70,7 +70,12 @@ def find(
     converge: Converge = False,
     run: Annotated[
         Path | None,
-        typer.Option("--run", metavar="RESULT.nc", help="Of periodic: what this run has come to."),
+        typer.Option(
+            "--run",
+            metavar="RESULT.nc",
+            parser=a_file,
+            help="Of periodic: what this run has come to.",
+        ),
     ] = None,
     seed: Annotated[
         int | None,
