@@ -32,10 +32,10 @@ from undula.app.cli import main
 from undula.app.sweep_work import SweepWork
 from undula.errors import InputError
 from undula.studies.borders_store import keep_borders, kept_columns
-from undula.studies.doubts import StoredWarning
 from undula.studies.items import Task
 from undula.studies.steps_store import stored_steps
 from undula.studies.study_store import open_study
+from undula.studies.unchecked import StoredWarning
 
 #: How a reading ends: as without damage, refused in a sentence, computed again; or wrongly.
 SAME, TOLD, AGAIN = "same", "told", "again"

@@ -24,9 +24,9 @@ from undula.app.catalogue_tasks import Job
 from undula.app.cli import main
 from undula.app.sweep_work import SweepWork
 from undula.studies import trial_reading
-from undula.studies.doubts import StoredWarning
 from undula.studies.seal import Condition, condition
 from undula.studies.study_store import load_study, open_study
+from undula.studies.unchecked import StoredWarning
 
 UNDULA = Path(sysconfig.get_path("scripts")) / "undula"
 #: Seconds for a process that damages and reads: it hangs if it takes longer on any machine.

@@ -15,7 +15,7 @@ import pytest
 import undula as un
 from refusal import complaint
 from small_studies import done, study_of
-from undula.analysis import doubts
+from undula.analysis import credibility
 from undula.analysis.run import Run
 from undula.analysis.schedule import Ending, Schedule
 from undula.analysis.settle_and_step import Course, settle_and_step
@@ -177,7 +177,7 @@ def test_a_run_whose_energy_does_not_balance_is_undecided() -> None:
     # Where nothing but the tolerance moves the body.
     model = TEN.with_(force=20.0)
     run = ended(model, un.kicked(model), atol=1e-2)
-    assert run.health.power_balance_error > doubts.UNSOUND
+    assert run.health.power_balance_error > credibility.UNSOUND
     assert run.verdict.name == "undecided"
     assert "power balance" in run.verdict.reason
     assert "rtol" in run.verdict.reason
@@ -326,8 +326,10 @@ def test_a_bent_body_that_starts_straight_has_not_settled_before_it_moves() -> N
 def test_the_glossary_names_every_verdict() -> None:
     page = (Path(__file__).parent.parent / "docs" / "glossary.md").read_text(encoding="utf-8")
     (row,) = (line for line in page.splitlines() if line.startswith("| verdict "))
-    words = Path(doubts.__file__).parent.joinpath("naming.py").read_text(encoding="utf-8")
-    words += Path(doubts.__file__).parent.joinpath("naming_held.py").read_text(encoding="utf-8")
+    words = Path(credibility.__file__).parent.joinpath("naming.py").read_text(encoding="utf-8")
+    words += (
+        Path(credibility.__file__).parent.joinpath("naming_held.py").read_text(encoding="utf-8")
+    )
     known = {"straight", "undecided", "chaotic"} | {
         line.split("|")[1].strip() for line in words.splitlines() if line.startswith("| ")
     }

@@ -44,10 +44,10 @@ if TYPE_CHECKING:
     from undula.models.profiles import ProfileLoad, TableLoad
     from undula.models.scales import Scales
     from undula.models.starts import from_state, helix, kicked, mode, planar, straight
-    from undula.studies.doubts import StoredWarning
     from undula.studies.steps_store import load_steps
     from undula.studies.store import load_result
     from undula.studies.study_store import load_study
+    from undula.studies.unchecked import StoredWarning
 
 _HOMES = {
     "BeadLoad": "undula.models.beads",
@@ -66,7 +66,7 @@ _HOMES = {
     "Run": "undula.analysis.run",
     "Scales": "undula.models.scales",
     "Spinning": "undula.analysis.states",
-    "StoredWarning": "undula.studies.doubts",
+    "StoredWarning": "undula.studies.unchecked",
     "TableLoad": "undula.models.profiles",
     "TipLoad": "undula.models.loads",
     "basins": "undula.analysis.basins",

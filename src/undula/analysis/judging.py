@@ -10,7 +10,7 @@ import numpy as np
 
 from undula.analysis.arrival import FALLEN, NEAR, TURNS, Arrival, motion_of
 from undula.analysis.close_up import CloseUp
-from undula.analysis.doubts import Grounds
+from undula.analysis.credibility import Grounds
 from undula.analysis.finite_separation import FOLDS, Separation, finite_separation
 from undula.analysis.health import Errors
 from undula.analysis.lyapunov import Lyapunov, NotFollowed, lyapunov

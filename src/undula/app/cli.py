@@ -74,10 +74,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _carry_out(given: Sequence[str]) -> int:
     """Run a command; tell a mistake in one sentence, and return the exit status."""
-    from undula.app.doubts import doubts_told
+    from undula.app.warnings_told import warnings_told
 
     try:
-        with doubts_told(), endings_heard():
+        with warnings_told(), endings_heard():
             status = int(app(given, prog_name="undula", standalone_mode=False) or 0)
         # Which is what typer makes of KeyboardInterrupt.
         return interrupted() if status == INTERRUPTED else status

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.sweep_points import FAILED, NOT_DONE
-from undula.studies.doubts import warn_damaged
 from undula.studies.point import PIECE_SECONDS
 from undula.studies.study_store import Arrays, StudyStore
+from undula.studies.unchecked import warn_damaged
 
 #: Points of a piece as long as nobody knows how long they take.
 FIRST_POINTS = 2

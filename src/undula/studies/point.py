@@ -26,11 +26,11 @@ from undula.errors import InputError
 from undula.models.model import Model
 from undula.models.starts import from_state, turned
 from undula.studies.build import build_model, build_schedule, build_start
-from undula.studies.doubts import StoredWarning
 from undula.studies.spec import RunInput, parse_input
 from undula.studies.store import run_image
 from undula.studies.study import of_dump
 from undula.studies.study_columns import LONGEST_TEXT
+from undula.studies.unchecked import StoredWarning
 
 #: Seconds that a piece of work should take: much longer than it is on its way.
 PIECE_SECONDS = 1.0
@@ -63,7 +63,7 @@ def points(study: Mapping[str, Any], numbers: Sequence[int]) -> tuple[str, list[
     has to wait for all.
     """
     records, end = [], time.perf_counter() + PIECE_SECONDS
-    with _doubts_untold():
+    with _without_warnings():
         for number in numbers:
             records.append(point(of_dump(study).job(number)))
             if time.perf_counter() > end:
@@ -81,7 +81,7 @@ def line(study: Mapping[str, Any], numbers: Sequence[int]) -> tuple[str, list[di
         return software(), _solved_line(jobs)
     records: list[dict[str, Any]] = []
     nodes: Nodes | None = None
-    with _doubts_untold():
+    with _without_warnings():
         for job in jobs:
             record = point({**job, "nodes": nodes})
             nodes = record.pop("nodes", nodes)
@@ -90,7 +90,7 @@ def line(study: Mapping[str, Any], numbers: Sequence[int]) -> tuple[str, list[di
 
 
 @contextmanager
-def _doubts_untold() -> Iterator[None]:
+def _without_warnings() -> Iterator[None]:
     """Say nothing of a start that carries no checksum: whoever hands out the points has said it."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StoredWarning)

@@ -13,12 +13,12 @@ import numpy as np
 import xarray as xr
 
 from undula.studies.chunks import Chunks
-from undula.studies.doubts import warn_damaged
 from undula.studies.sound_store import SoundStore
 from undula.studies.study import of_dump
 from undula.studies.study_columns import INNER, STATUS
 from undula.studies.study_layout import known_arrays
 from undula.studies.study_metadata import ARRAYS, DIGEST, Metadata
+from undula.studies.unchecked import warn_damaged
 from undula.studies.zarr_copy import opened, read_copy
 
 

@@ -20,7 +20,6 @@ import xarray as xr
 
 from undula.errors import InputError
 from undula.studies.digests import digest_of_arrays
-from undula.studies.doubts import warn_unchecked
 from undula.studies.result_kinds import (
     RUN,
     Kind,
@@ -30,6 +29,7 @@ from undula.studies.result_kinds import (
 )
 from undula.studies.seal import Condition, condition, sealed
 from undula.studies.study_metadata import is_store, read_metadata
+from undula.studies.unchecked import warn_unchecked
 from undula.studies.whole_file import write_whole
 
 _ENGINE: Any = "h5netcdf"

@@ -6,9 +6,9 @@ from pathlib import Path
 import xarray as xr
 
 from undula.errors import InputError
-from undula.studies.doubts import warn_unchecked
 from undula.studies.sound_store import SoundStore
 from undula.studies.study_metadata import Metadata
+from undula.studies.unchecked import warn_unchecked
 
 
 def read_copy(path: Path, metadata: Metadata, without: Iterable[str] = ()) -> xr.Dataset:

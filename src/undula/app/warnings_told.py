@@ -6,11 +6,11 @@ from contextlib import contextmanager
 from typing import Any
 
 from undula.errors import InputError
-from undula.studies.doubts import StoredWarning
+from undula.studies.unchecked import StoredWarning
 
 
 @contextmanager
-def doubts_told() -> Iterator[None]:
+def warnings_told() -> Iterator[None]:
     """Tell in the end of each stored result that it is not known to be whole, once.
 
     Where a command is refused, its one sentence is all that is told.
