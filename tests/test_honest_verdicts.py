@@ -326,7 +326,7 @@ def test_a_bent_body_that_starts_straight_has_not_settled_before_it_moves() -> N
 def test_the_glossary_names_every_verdict() -> None:
     page = (Path(__file__).parent.parent / "docs" / "glossary.md").read_text(encoding="utf-8")
     (row,) = (line for line in page.splitlines() if line.startswith("| verdict "))
-    words = Path(credibility.__file__).parent.joinpath("naming.py").read_text(encoding="utf-8")
+    words = Path(credibility.__file__).with_name("naming.py").read_text(encoding="utf-8")
     words += (
         Path(credibility.__file__).parent.joinpath("naming_held.py").read_text(encoding="utf-8")
     )
