@@ -74,7 +74,7 @@ def _tells(model: Any, threshold: str, along: Any = None, **_: Any) -> NoReturn:
     raise BegunError
 
 
-def _asks(question: Any, _: Any) -> NoReturn:
+def _asks(question: Any) -> NoReturn:
     if question.along is not None:
         parameter, values = question.along
         changed(build_model(question.wanted), parameter, values[0])
