@@ -77,9 +77,7 @@ class Grounds:
         """Return a verdict on a motion, taken back where it may not be believed."""
         if verdict.name == UNDECIDED and verdict.late is None:
             return verdict
-        seen = self.whole if verdict.name == STRAIGHT else motion.late(verdict.window_start)
-        straight = self.model.nodes(self.model.straight())
-        size = _size(self.model, seen.nodes, straight)
+        size = self._size(verdict, motion)
         return (
             self._unsound(verdict)
             or self._unstable(verdict)
@@ -87,6 +85,16 @@ class Grounds:
             or self._coarse(verdict, size)
             or verdict
         )
+
+    def _size(self, verdict: Verdict, motion: Motion) -> float:
+        """Return how large the motion is [rad], at least: where it is large, one sample tells."""
+        straight = self.model.nodes(self.model.straight())
+        one = self.whole.nodes[:1] if verdict.name == STRAIGHT else motion.nodes[-1:]
+        size = _size(self.model, one, straight)
+        if verdict.name in PLAIN and size > ABOVE_ATOL * self.schedule.atol:
+            return size
+        seen = self.whole if verdict.name == STRAIGHT else motion.late(verdict.window_start)
+        return _size(self.model, seen.nodes, straight)
 
     def _unsound(self, verdict: Verdict) -> Verdict | None:
         if self._balance() > UNSOUND:

@@ -63,6 +63,8 @@ class Simulation:
         The state that a run to the solved one was left for.
     tight_from : float or None
         Time from which on its steps are more exact than was asked for, see `tighten` [T].
+    sampled : int
+        Number of samples so far.
     shown_until : float
         A motion that has settled is shown until then, or until it has been seen often enough [T].
     """
@@ -79,10 +81,12 @@ class Simulation:
     shown_until: float = 0.0
     cause: str = ""
     recent: Recent = field(default_factory=Recent)
+    sampled: int = field(init=False)
     marks: deque[Memory] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
 
     def __post_init__(self) -> None:
         """Make what follows from the rest."""
+        self.sampled = sum(map(len, self.rows))  # asked for several times a look
         self.options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
         departure = self.model.departure(self.model.positions(first[:-RATES]))
@@ -99,10 +103,8 @@ class Simulation:
         refuse_too_large(model, schedule)
         x = numbers(x, "the start")
         if x.shape != (model.size,):
-            raise InputError(
-                f"a start of shape {x.shape} is no state of this model;"
-                f" give {model.size} finite numbers"
-            )
+            shapes = f"a start of shape {x.shape} is no state of this model"
+            raise InputError(f"{shapes}; give {model.size} finite numbers")
         refuse_misfits(model.nodes(x), extensible=model.extensible)
         x = model.admissible(x)
         unknowns, rates = model.unknowns(x), model.rates(x)
@@ -116,11 +118,6 @@ class Simulation:
     def time(self) -> float:
         """Time that the samples have reached [T]."""
         return max(0, self.sampled - 1) * self.interval
-
-    @property
-    def sampled(self) -> int:
-        """Number of samples so far."""
-        return sum(len(rows) for rows in self.rows)
 
     @property
     def times(self) -> Array:
@@ -159,13 +156,14 @@ class Simulation:
         )
         # A look may end long before all times are reached: what is kept is not to hold the rest.
         states = states if filled == fine.size else states[:filled].copy()
-        self.rows.append(states if parts == 1 else states[-fine[0] % parts :: parts].copy())
+        self._keep(states if parts == 1 else states[-fine[0] % parts :: parts].copy())
         if noted:
             self.recent.note(self.interval / parts, int(fine[0]), states)
         status = Status(code)
         if not np.isfinite(self.memory.differences[0]).all():
             status = Status.NOT_FINITE
             self.rows[-1] = self.rows[-1][np.isfinite(self.rows[-1]).all(axis=1)]
+            self.sampled = sum(map(len, self.rows))
         if status not in (Status.DONE, Status.PAUSED):
             self.ending, self.cause = Ending.FAILED, status.advice
             return False
@@ -174,6 +172,11 @@ class Simulation:
         shapes = self._nodes(sections[:found, 1:]) if found else ()
         self.watch.note(self._pace(), list(zip(sections[:found, 0].tolist(), shapes, strict=True)))
         return not self.schedule.open_ended or self._goes_on()
+
+    def _keep(self, rows: Array) -> None:
+        """Add samples to those so far."""
+        self.rows.append(rows)
+        self.sampled += len(rows)
 
     def _parts(self) -> int:
         """Return in how many parts an interval is sampled for the close-up; 0 if for none."""
@@ -224,7 +227,7 @@ class Simulation:
             self.ending = Ending.SETTLED
             return False
         if self.sampled >= 2 * self.schedule.samples:
-            self.rows = [self.states[::2].copy()]
+            self.rows, self.sampled = [self.states[::2].copy()], -(-self.sampled // 2)
             self.interval *= 2.0
         return True
 
