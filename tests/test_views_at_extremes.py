@@ -107,6 +107,13 @@ def test_the_way_to_a_steady_value_is_on_the_axis_but_a_spike_does_not_decide_it
     assert limits([np.zeros(5)])[0] < 0.0 < limits([np.zeros(5)])[1]
 
 
+def test_a_beginning_that_takes_little_more_room_is_shown_whole() -> None:
+    tip = np.where(np.arange(4000) < 4, 1.0, 0.65)
+    low, high = limits([tip, 0.45 * np.sin(np.arange(4000.0))])
+    assert low < -0.45
+    assert high > 1.0
+
+
 def test_a_motion_that_lasts_decides_its_axis_however_small_it_is() -> None:
     energy = 5.0 + 0.05 * np.sin(np.arange(4000.0))
     low, high = limits([energy])

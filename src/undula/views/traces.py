@@ -28,6 +28,8 @@ _MARK_SAMPLES_BELOW = 60
 _CONSTANT = 1e-3
 # What has decayed to less than this part of its greatest value has none of its own to be seen.
 _NOTHING = 1e-6
+# A beginning that makes an axis longer by no more than this part of it is shown whole.
+_STRETCH = 0.5
 
 
 def draw_traces(
@@ -193,8 +195,9 @@ def _scale(line: list[Axes], curves: Sequence[Curve]) -> None:
 def limits(curves: Sequence[Floats]) -> tuple[float, float]:
     """Return the limits of an axis for some curves, each (m,), in the course of time.
 
-    They hold the second half of each curve and nearly all of the first. Where that is constant but
-    for round-off, they hold the way to it as well, as far as it is no spike.
+    They hold the second half of each curve and nearly all of the first; the rest, too, where that
+    takes little more room. Where that is constant but for round-off, they hold the way to it as
+    well, as far as it is no spike.
     """
     bounds = np.array([_bounds(values) for values in curves])
     low, high = float(bounds[:, 0].min()), float(bounds[:, 1].max())
@@ -204,6 +207,10 @@ def limits(curves: Sequence[Floats]) -> tuple[float, float]:
         low, high = float(least), float(most)
     elif high - low < _CONSTANT * value:
         low, high = max(float(least), low - value), min(float(most), high + value)
+    else:
+        stretch = _STRETCH * (high - low)
+        low = float(least) if low - least <= stretch else low
+        high = float(most) if most - high <= stretch else high
     value = max(abs(low), abs(high))
     margin = 0.1 * (high - low if high - low > _CONSTANT * value else value) or 1e-3
     return low - margin, high + margin
