@@ -5,6 +5,7 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import sysconfig
 import time
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ import pytest
 
 import undula as un
 from undula.analysis.interrupts import ENDINGS, endings_heard, interruptible
+from undula.app.answers import INTERRUPTED
 from undula.app.cli import main
 from undula.studies.steps_store import load_steps
 from undula.studies.store import load_result
@@ -279,3 +281,18 @@ def test_a_running_command_keeps_its_result(ending: signal.Signals, tmp_path: Pa
     assert answer["status"] == "interrupted"
     assert f"go on with: undula resume {tmp_path / 'run.nc'}" in told
     assert float(load_result(tmp_path / "run.nc")["time"][-1]) == answer["time"] > 0.0
+
+
+def test_ctrl_c_while_the_program_is_imported_ends_it_quietly() -> None:
+    program = (
+        "import sys\n"
+        "class Pressed:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'typer':\n"
+        "            raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Pressed())\n"
+        "from undula.app.start import main\n"
+        "sys.exit(main())\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (INTERRUPTED, "", "")
