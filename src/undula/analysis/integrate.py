@@ -169,7 +169,7 @@ def with_exponents(
     """
     with interruptible() as interrupted:
         watch = _watch(simulation, time.monotonic(), budget, interrupted, progress)
-        return Run.of(simulation, exponents, watch)
+        return Run.of(simulation, exponents).judged(watch)
 
 
 def _watch(
@@ -197,24 +197,24 @@ def _settled(simulation: Simulation, watch: Watch) -> Run | None:
     """Return a run that has settled; have it go on if it takes more of it to name the motion."""
     if simulation.ending is not Ending.SETTLED:
         return None
-    run, settled = Run.of(simulation, watch=watch), simulation.settled
-    if settled and settled.brief and not _briefly_told(run, settled):
+    run, settled = Run.of(simulation), simulation.settled
+    if settled and settled.brief and not _briefly_told(run, settled, watch):
         if settled.brief == 1 and simulation.schedule.rtol > TIGHT:
             simulation.tighten(TIGHT)
             return None
         simulation.settled = _shown_again(settled, run)
         simulation.ending = Ending.RUNNING
-    elif run.verdict.longer is not None and simulation.time < simulation.schedule.end:
-        simulation.shown_until = simulation.time + run.verdict.longer
+    elif (longer := run.judged(watch).verdict.longer) and simulation.time < simulation.schedule.end:
+        simulation.shown_until = simulation.time + longer
         simulation.ending = Ending.RUNNING
     return run
 
 
-def _briefly_told(run: Run, settled: Settled) -> bool:
+def _briefly_told(run: Run, settled: Settled, watch: Watch) -> bool:
     """Tell whether a run shows enough to be named; what leaves its plane has no name yet."""
     # That is a part of judging it which is told for far less than the whole.
     unrest = leaves_its_plane(run.since(settled.since).nodes)
-    return not unrest and run.verdict.name == BRIEFLY_TOLD
+    return not unrest and run.judged(watch).verdict.name == BRIEFLY_TOLD
 
 
 def _shown_again(settled: Settled, run: Run) -> Settled:
@@ -243,7 +243,7 @@ def _irregular(simulation: Simulation, watch: Watch) -> Run | None:
         simulation.tighten(TIGHT)
         return None
     simulation.ending = Ending.IRREGULAR
-    run = Run.of(simulation, watch=watch)
+    run = Run.of(simulation).judged(watch)
     if run.lyapunov is not None and run.verdict.name != UNDECIDED:
         return run
     simulation.ending = Ending.RUNNING

@@ -73,14 +73,9 @@ class Run:
     exponents: Exponents = Exponents.IF_IRREGULAR
 
     @classmethod
-    def of(
-        cls,
-        simulation: Simulation,
-        exponents: Exponents = Exponents.IF_IRREGULAR,
-        watch: Watch | None = None,
-    ) -> Self:
-        """Return the result that a simulation has come to so far, judged at once if watched."""
-        run = cls(
+    def of(cls, simulation: Simulation, exponents: Exponents = Exponents.IF_IRREGULAR) -> Self:
+        """Return the result that a simulation has come to so far."""
+        return cls(
             model=simulation.model,
             schedule=simulation.schedule,
             ending=simulation.ending,
@@ -93,9 +88,12 @@ class Run:
             checkpoint=simulation.checkpoint(),
             exponents=exponents,
         )
-        if watch is not None:
-            vars(run)["_judged"] = run._judge(watch)  # which is where it is kept
-        return run
+
+    def judged(self, watch: Watch) -> Self:
+        """Return the run, judged at once: `watch` is told how far exponents are."""
+        if "_judged" not in vars(self):
+            vars(self)["_judged"] = self._judge(watch)  # which is where it is kept
+        return self
 
     @cached_property
     def _judged(self) -> Judged:
