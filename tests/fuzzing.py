@@ -245,8 +245,8 @@ def _sound(command: str, files: Files) -> Mapping[str, st.SearchStrategy[str]]:
         "store": files.stores,
         "out": outs.get(command, files.new_figures),
         "plot": files.new_figures,
-        "budget": st.just("2"),
-        "until": st.sampled_from(("0.02", "0.05", "1", "30")),
+        "budget": st.just("0.3"),
+        "until": st.floats(0.02, 1e6).map(repr),
     }
 
 
@@ -291,7 +291,7 @@ def _cheaply(name: str) -> list[str]:
     if name in ("units", "plot", "movie", "status", "reproduce"):
         return []
     if name == "resume":
-        return ["--budget", "2"]
+        return ["--budget", "0.3"]
     small = ["--set", "model.segments=6"]
     if name in ("run", "step"):
         small += ["--set", "time.until=0.01", "--set", "time.samples=11", "--budget", "2"]
