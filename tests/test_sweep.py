@@ -18,6 +18,7 @@ import pytest
 import xarray as xr
 
 from small_studies import AXES, QUICK, differing
+from undula.app import own_workers
 from undula.app import pool as pool_module
 from undula.app.cli import main
 from undula.app.pool import DiedError, pool
@@ -315,7 +316,7 @@ def deadly(jobs: list[dict[str, int]]) -> None:
 def test_a_piece_under_which_every_worker_dies_comes_back(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(pool_module, "DEATHS", 1)
+    monkeypatch.setattr(own_workers, "DEATHS", 1)
     with pool(1, None, print) as workers:
         workers.give("piece", deadly, [{"number": 1}])
         end, back = time.monotonic() + PATIENCE, []
