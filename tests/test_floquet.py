@@ -131,3 +131,10 @@ def test_without_known_directions_all_multipliers_are_found() -> None:
 def test_what_is_gone_after_an_orbit_has_no_exponent() -> None:
     seen = floquet(np.diag([1.0, 0.5, 0.0]), np.eye(3)[:, :1], np.ones(1))
     np.testing.assert_array_equal(seen.exponents(2.0), [np.log(0.5) / 2.0])
+
+
+def test_a_motion_that_has_come_to_rest_has_multipliers_and_no_known_error() -> None:
+    with np.errstate(all="raise"):
+        told = floquet(np.diag([0.5, 0.25]), np.zeros((2, 1)), np.ones(1))
+    assert np.isinf(told.known_errors).all()
+    assert np.isfinite(told.multipliers).all()

@@ -65,11 +65,13 @@ def floquet(monodromy: Array, directions: Array, expected: Array) -> Floquet:
     others = np.linalg.qr(directions, mode="complete")[0][:, t:]
     values, vectors = np.linalg.eig(others.T @ monodromy @ others)
     order = np.argsort(-np.abs(values), kind="stable")
-    wrong = monodromy @ directions - directions * expected
+    wrong = np.linalg.norm(monodromy @ directions - directions * expected, axis=0)
+    size = np.linalg.norm(directions, axis=0)
     return Floquet(
         values[order].astype(complex),
         (others @ vectors[:, order]).astype(complex),
-        np.linalg.norm(wrong, axis=0) / np.linalg.norm(directions, axis=0),
+        # A motion that has come to rest has no direction, and nothing is known of its error.
+        np.divide(wrong, size, out=np.full_like(wrong, np.inf), where=size > 0.0),
     )
 
 
