@@ -17,7 +17,7 @@ from undula.analysis.observables import (
     transverse,
     winding_angle,
 )
-from undula.analysis.returns import PROMINENT, prominent_maxima
+from undula.analysis.peaks import PROMINENCE, prominent_maxima
 from undula.analysis.spectral import hann
 from undula.arrays import Array, Instants, Shapes
 
@@ -59,7 +59,7 @@ def precession(time: Instants, nodes: Shapes) -> Precession | None:
         Node positions [L], shape ``(m, N + 1, 3)``.
     """
     away = displacement(nodes)
-    tops = prominent_maxima(away, PROMINENT[0] * float(np.ptp(away)))
+    tops = prominent_maxima(away, PROMINENCE * float(np.ptp(away)))
     if len(tops) < _LEAST:
         return None
     span = float(time[-1] - time[0])

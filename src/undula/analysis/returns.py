@@ -15,13 +15,14 @@ import numpy as np
 
 from undula.analysis.alignment import Compare, comparison
 from undula.analysis.observables import displacement
+from undula.analysis.peaks import PROMINENCE, prominent_maxima
 from undula.arrays import Array, Instants, Shapes
 
 #: Most maxima of the displacement that one period may have.
 MOST_MAXIMA = 12
-#: A maximum rises above the minima beside it by this share of the whole swing; others are noise. If
-#: nothing comes back so, a ripple may be counted at times only: then by the second share.
-PROMINENT = (0.02, 0.2)
+#: Shares of the whole swing by which a maximum rises above the minima next to it. If nothing comes
+#: back with the first, a ripple may be counted at times only: then the second is tried.
+PROMINENCES = (PROMINENCE, 0.2)
 #: A shape that comes back to within this share of the displacement, does: several times what the
 #: interpolation between some 24 samples a beat leaves, and a tenth of what chaotic motions show.
 RECURRENT = 5e-3
@@ -92,8 +93,8 @@ def recurrence(time: Instants, nodes: Shapes, axisymmetric: bool = True) -> Recu
     away, compare = displacement(nodes), comparison(axisymmetric=axisymmetric)
     size = float(np.sqrt(np.mean(away**2)))
     nearest = None
-    for prominent in PROMINENT:
-        at, shapes = _farthest(time, nodes, away, prominent * float(np.ptp(away)))
+    for prominence in PROMINENCES:
+        at, shapes = _farthest(time, nodes, away, prominence * float(np.ptp(away)))
         most = min(MOST_MAXIMA, len(at) // (FEWEST_REPETITIONS + 1))
         found = []
         for every in range(1, most + 1):
@@ -122,31 +123,6 @@ def _farthest(
     interval = (time[-1] - time[0]) / (len(time) - 1)
     near = [_between(nodes, place + shift) for shift in (0.0, -_NUDGE, _NUDGE)]
     return np.asarray(time[0] + place * interval), near
-
-
-def prominent_maxima(values: Array, height: float) -> Array:
-    """Return the indices of maxima that rise by more than a height above the minima beside them.
-
-    Parameters
-    ----------
-    values
-        Samples, shape ``(m,)``.
-    height
-        At least 0.
-    """
-    rises = np.diff(values) > 0.0
-    found: list[int] = []
-    lowest, top = float(values[0]), -1
-    for i in (np.flatnonzero(rises[1:] != rises[:-1]) + 1).tolist():
-        if top < 0:
-            lowest = min(lowest, values[i])
-            top = i if values[i] > lowest + height else -1
-        elif values[i] > values[top]:
-            top = i
-        elif values[i] < values[top] - height:
-            found.append(top)
-            lowest, top = values[i], -1
-    return np.array(found, dtype=int)
 
 
 def _vertex(values: Array, top: Array, beside: int) -> Array:
