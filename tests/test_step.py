@@ -412,7 +412,9 @@ def test_an_interruption_before_the_first_step_leaves_nothing(
 def test_what_is_stored_is_read_bit_for_bit(series: xr.Dataset, folder: Path) -> None:
     steps = stored_steps(series)
     assert all(isinstance(step.verdict, str) and type(step.value) is float for step in steps)
-    job_series = stepping.plan(None, [TWO[1], TWO[3]], THROUGH[1], back=True, kick=1e-3, seed=1)
+    job_series = stepping.plan(
+        read_step_input(None, [TWO[1], TWO[3]]), THROUGH[1], back=True, kick=1e-3, seed=1
+    )
     stepping.write_steps(Path("copy.nc"), job_series, steps)
     assert Path("copy.nc").read_bytes() == (folder / "steps.nc").read_bytes()
     assert json.loads(series.attrs["input"])["model"]["links"] == 2

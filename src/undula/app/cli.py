@@ -204,12 +204,14 @@ def step(
     """
     from undula.app.jobs import reads_of
     from undula.app.stepping import Job, plan, step_along
+    from undula.studies.step_input import read_step_input
 
     seconds = seconds_of(budget)
-    series = plan(file, changes or (), along, back=down, kick=kick, seed=seed)
+    wanted = read_step_input(file, changes or ())
+    series = plan(wanted, along, back=down, kick=kick, seed=seed)
     result = (out or Path("results") / (file.stem if file else "step")) / "steps.nc"
-    reads = reads_of(file, series.wanted)
-    job = Job(series, result, reads, overwrite=overwrite, with_thresholds=thresholds)
+    reads = reads_of(file, wanted)
+    job = Job(wanted, series, result, reads, overwrite=overwrite, with_thresholds=thresholds)
     return step_along(job, budget=seconds, as_json=as_json)
 
 

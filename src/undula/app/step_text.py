@@ -42,7 +42,7 @@ def step_answer(
     changes = regime_changes(steps)
     return {
         "parameter": series.course.parameter,
-        "load": series.wanted.tell({series.course.parameter}),
+        "load": series.load,
         "units": series.model.units.names(),
         "steps": [_record(step) for step in steps],
         "missing": len(series.course.stops) - len(steps),

@@ -20,7 +20,7 @@ from undula.errors import InputError
 from undula.models.model import Model
 from undula.studies.build import build_model, build_schedule, build_start
 from undula.studies.ranges import parse_steps
-from undula.studies.step_input import read_step_input
+from undula.studies.spec import RunInput
 from undula.studies.steps_store import (
     Series,
     dataset_of_steps,
@@ -43,8 +43,9 @@ class _OutOfTimeError(Exception):
 
 @dataclass(frozen=True)
 class Job:
-    """A series with its place on disk, the files that it is read from, and what is asked too."""
+    """A series with its input, its place on disk, the files that it is read from, and options."""
 
+    wanted: RunInput
     series: Series
     result: Path
     reads: Sequence[Path]
@@ -52,21 +53,18 @@ class Job:
     with_thresholds: bool
 
 
-def plan(
-    file: Path | None, changes: Sequence[str], along: str, *, back: bool, kick: float, seed: int
-) -> Series:
-    """Return the series of a command line.
+def plan(wanted: RunInput, along: str, *, back: bool, kick: float, seed: int) -> Series:
+    """Return the series of an input and the options of a command line.
 
     Raises
     ------
     InputError
-        The input, the parameter, one of its values or the kick is wrong.
+        The parameter, one of its values or the kick is wrong.
     """
-    wanted = read_step_input(file, changes)
     course = Course(*parse_steps("--along", along), back=back, kick=kick, seed=seed)
     model = build_model(wanted)
     course.models(model)
-    return Series(wanted, model, course)
+    return Series(wanted.dump(), wanted.tell({course.parameter}), model, course)
 
 
 def step_along(job: Job, *, budget: float, as_json: bool) -> int:
@@ -134,7 +132,7 @@ def _carry_on(job: Job, steps: list[Step], budget: float, interrupted: Callable[
     """Append the missing steps, as far as time and patience go; return how it ended."""
     series, stops, before = job.series, job.series.course.stops, len(steps)
     first = series.course.models(series.model)[0]
-    start = first.straight() if steps else build_start(series.wanted, first)
+    start = first.straight() if steps else build_start(job.wanted, first)
     keep = _Keeper(job)
     ending = "done"
     try:
@@ -146,7 +144,7 @@ def _carry_on(job: Job, steps: list[Step], budget: float, interrupted: Callable[
                 series.model,
                 series.course,
                 start,
-                build_schedule(series.wanted),
+                build_schedule(job.wanted),
                 before=tuple(steps),
                 budget=budget,
                 progress=lambda run: tell(len(steps), stops[len(steps)][0], run.time),

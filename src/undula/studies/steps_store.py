@@ -16,7 +16,6 @@ from undula.analysis.settle_and_step import Course, Step
 from undula.errors import InputError
 from undula.models.model import Model
 from undula.studies.result_kinds import Kind
-from undula.studies.spec import RunInput
 from undula.studies.store import read_result, write_result
 
 STEPS = Kind("steps 1", "undula step")
@@ -45,9 +44,22 @@ _QUANTITIES = {
 
 @dataclass(frozen=True)
 class Series:
-    """What makes a series of steps: the complete input, the model that it describes, the course."""
+    """Everything that determines a series of steps.
 
-    wanted: RunInput
+    Attributes
+    ----------
+    input
+        The complete input in plain JSON types.
+    load
+        Model and load in a few words, without the parameter that is varied.
+    model
+        The model that the input describes.
+    course
+        The values of the parameter, in order.
+    """
+
+    input: Mapping[str, Any]
+    load: str
     model: Model
     course: Course
 
@@ -154,11 +166,11 @@ def refuse_another_series(path: Path, stored: xr.Dataset, series: Series) -> Non
 def _attributes(series: Series) -> dict[str, str]:
     versions = {"python": platform.python_version()} | {one: version(one) for one in _LIBRARIES}
     return {
-        "input": json.dumps(series.wanted.dump()),
+        "input": json.dumps(series.input),
         "options": json.dumps(_options(series.course)),
         "versions": json.dumps(versions),
         "parameter": series.course.parameter,
-        "load": series.wanted.tell({series.course.parameter}),
+        "load": series.load,
         "units": json.dumps(series.model.units.names()),
         "undula_format": STEPS.format,
     }
