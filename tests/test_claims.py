@@ -9,6 +9,7 @@ import pytest
 from refusal import complaint
 from small_catalogue import small_catalogue
 from undula.app.catalogue_tasks import carry_out
+from undula.app.reproduction import RUN_COMMAND
 from undula.models.filament import Filament
 from undula.studies import claims, slips
 from undula.studies.claims import Answer, judge
@@ -135,7 +136,7 @@ def test_a_number_has_an_error(name: str, told: Claim) -> None:
 
 
 def test_a_wrong_published_value_changes_the_verdict(tmp_path: Path) -> None:
-    answers = {"onset": Answer(carry_out(("stability",))["answer"])}
+    answers = {"onset": Answer(carry_out(RUN_COMMAND, ("stability",))["answer"])}
     folder = small_catalogue(tmp_path / "right")
     wrong = small_catalogue(tmp_path / "wrong", onset=("published = 37.7", "published = 38.7"))
     assert judge(catalogue(folder)["onset"].claims[0], answers).verdict == "confirmed"
@@ -149,7 +150,7 @@ def test_a_perturbed_coefficient_of_the_equations_changes_verdicts(monkeypatch, 
     command = [word.replace('"', "").replace("\\", "") for word in command]
 
     def outcome() -> str | None:
-        answer = carry_out(tuple(command))["answer"]
+        answer = carry_out(RUN_COMMAND, tuple(command))["answer"]
         return judge(asked["flaps-above"], {"above": Answer(answer)}).verdict
 
     assert outcome() == "confirmed"

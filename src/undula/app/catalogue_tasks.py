@@ -4,6 +4,7 @@ import contextlib
 import hashlib
 import io
 import json
+import pkgutil
 import shlex
 import time
 from collections.abc import Iterator, Mapping
@@ -245,11 +246,16 @@ def answers_of(item: Item, name: str, jobs: Mapping[str, Job]) -> dict[str, Answ
     return answers
 
 
-def carry_out(command: tuple[str, ...], *, quietly: bool = True) -> dict[str, Any]:
+def carry_out(
+    run_command: str, command: tuple[str, ...], *, quietly: bool = True
+) -> dict[str, Any]:
     """Run a command of `undula` in this process.
 
     Parameters
     ----------
+    run_command
+        Import path, as ``package.module:function``, of the function that runs a command from its
+        words and returns the exit status. A path instead of the function can be sent to workers.
     command
         Its words, without `undula`.
     quietly
@@ -261,8 +267,6 @@ def carry_out(command: tuple[str, ...], *, quietly: bool = True) -> dict[str, An
         `status`, the exit status; `answer`, its JSON; `said`, the last line on standard error;
         `seconds`.
     """
-    from undula.app.cli import main
-
     began = time.monotonic()
     answered, said = io.StringIO(), io.StringIO()
     with contextlib.ExitStack() as stack:
@@ -270,7 +274,7 @@ def carry_out(command: tuple[str, ...], *, quietly: bool = True) -> dict[str, An
         if quietly:
             stack.enter_context(contextlib.redirect_stderr(said))
         try:
-            status = main([*command, "--json"])
+            status = pkgutil.resolve_name(run_command)([*command, "--json"])
         except Exception as error:
             status = 1
             said.write(f"{type(error).__name__}: {error}\n")

@@ -29,6 +29,7 @@ def write_report(
     wanted: Collection[str],
     quick: bool,
     vector: bool,
+    run_command: str,
 ) -> Path:
     """Write the page, with movies and, if wanted, vector figures beside it; return its name.
 
@@ -51,7 +52,7 @@ def write_report(
     ]
     if vector:
         for name, item in items.items():
-            write_vectors(out / "figures", name, item, jobs)
+            write_vectors(out / "figures", name, item, jobs, run_command)
     shown = [one for one in sections if one["name"] in wanted or _has_content(one)]
     claims = [row for name in items for row in rows[name]]
     environment = Environment(

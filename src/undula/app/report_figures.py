@@ -95,8 +95,12 @@ def movies_of(
     return shown
 
 
-def write_vectors(folder: Path, name: str, item: Item, jobs: Mapping[str, Job]) -> None:
+def write_vectors(
+    folder: Path, name: str, item: Item, jobs: Mapping[str, Job], run_command: str
+) -> None:
     """Write the figures of an item as PDF, or as SVG where a command has drawn that.
+
+    The import path `run_command` is that of `carry_out`.
 
     Raises
     ------
@@ -116,7 +120,7 @@ def write_vectors(folder: Path, name: str, item: Item, jobs: Mapping[str, Job]) 
             renewing(path).write(path, _bytes(source))
             continue
         renewing(path).check(path)
-        outcome = carry_out(_drawing_again(source, path, jobs))
+        outcome = carry_out(run_command, _drawing_again(source, path, jobs))
         if outcome["status"] != DONE:
             raise InputError(f"{path} cannot be drawn: {outcome['said']}")
 

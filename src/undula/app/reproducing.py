@@ -47,6 +47,8 @@ class Asked:
         Whether figures are kept as PDF files as well.
     fresh
         Whether tasks are done again that are done already.
+    run_command
+        Import path of the function that runs a command of the catalogue.
     """
 
     catalogue: Path
@@ -57,6 +59,7 @@ class Asked:
     budget: float
     vector: bool
     fresh: bool
+    run_command: str
 
 
 def list_items(folder: Path, *, as_json: bool) -> int:
@@ -121,6 +124,7 @@ def reproduce(asked: Asked, *, as_json: bool) -> int:
             wanted=wanted.keys(),
             quick=asked.quick,
             vector=asked.vector,
+            run_command=asked.run_command,
         )
         _write_claims(asked, [row for name in items for row in rows[name]])
     told = [row for name in wanted for row in rows[name]]
@@ -183,7 +187,7 @@ def _carry_on(left: list[Job], asked: Asked) -> str:
 
         while not stopped() and (job := work.take(all_cores=True)) is not None:
             notice(job.told)
-            outcome = carry_out(_limited(job, asked.workers, end), quietly=False)
+            outcome = carry_out(asked.run_command, _limited(job, asked.workers, end), quietly=False)
             if _was_stopped(outcome):
                 return str(outcome["answer"].get("status", "interrupted"))
             work.take_back(job, outcome)
@@ -193,7 +197,7 @@ def _carry_on(left: list[Job], asked: Asked) -> str:
         ):
             while work.left and not stopped():
                 while workers.has_room and (job := work.take(all_cores=False)) is not None:
-                    workers.give(job, carry_out, job.command)
+                    workers.give(job, carry_out, asked.run_command, job.command)
                 for job, outcome in workers.come_back(_PATIENCE):
                     work.take_back(job, outcome)
                 tell(work.left, work.failed)

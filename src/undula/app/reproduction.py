@@ -7,6 +7,9 @@ import typer
 
 from undula.app.options import Budget, Json, a_path, seconds_of
 
+#: Where the catalogue finds the function that runs its commands.
+RUN_COMMAND = "undula.app.cli:main"
+
 
 def reproduce(
     names: Annotated[
@@ -58,5 +61,7 @@ def reproduce(
         return list_items(folder, as_json=as_json)
     seconds = seconds_of(budget)
     report = out or Path("report")
-    asked = Asked(folder, tuple(names or ()), quick, report, workers, seconds, vector, fresh)
+    asked = Asked(
+        folder, tuple(names or ()), quick, report, workers, seconds, vector, fresh, RUN_COMMAND
+    )
     return carry_out(asked, as_json=as_json)
