@@ -21,9 +21,9 @@ from contenders import page
 from contenders.orbits import Orbit, orbit
 from contenders.windows import instants
 from undula.arrays import Array
-from undula.numerics.banded import to_dense
-from undula.numerics.radau import Radau, interpolation, radau
-from undula.numerics.system import derivative, derivative_half_bandwidth, residual
+from undula.numerics.integration.system import derivative, derivative_half_bandwidth, residual
+from undula.numerics.linalg.banded import to_dense
+from undula.numerics.orbits.radau import Radau, interpolation, radau
 
 SEGMENTS, BEATS = 20, 3
 STAGES, STEPS = (2, 3, 4, 5), (12, 16, 20, 24, 28, 36)

@@ -19,12 +19,12 @@ import numpy as np
 import undula as un
 from contenders import page
 from contenders.orbits import FORCES, orbit
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.simulation import Simulation
 from undula.arrays import Array, State
-from undula.numerics import memory as names
-from undula.numerics.integrate import advance
-from undula.numerics.memory import Memory
+from undula.numerics.integration import stepper_state as names
+from undula.numerics.integration.stepper_state import Memory
+from undula.numerics.integration.time_loop import advance
 
 QUICK = "--quick" in sys.argv
 SIZES = (20, 40, 80, 160) if QUICK else (20, 40, 80, 160, 320, 640, 1280)
@@ -99,7 +99,9 @@ def costs(motion: str) -> list[Cost]:
 def kilobytes(model: un.Filament, memory: Memory) -> float:
     """Return what the integrator keeps, model tables and a step's scratch included."""
     kept = [*memory, *(table for table in model.system if isinstance(table, np.ndarray))]
-    scratch = 8 * memory.factored_at.nbytes  # `undula.numerics.workspace.Work` has eight vectors
+    scratch = (
+        8 * memory.factored_at.nbytes
+    )  # `undula.numerics.integration.workspace.Work` has eight vectors
     return (sum(array.nbytes for array in kept) + scratch) / 1024.0
 
 

@@ -30,13 +30,13 @@ from pathlib import Path
 import numpy as np
 
 import undula as un
-from undula.analysis.fundamental import Frequency
-from undula.analysis.integrate import carry_on
-from undula.analysis.regimes import Verdict
-from undula.analysis.run import Run
-from undula.analysis.simulation import Simulation
-from undula.studies.build import build_model, build_schedule, build_start
-from undula.studies.spec import parse_input
+from undula.analysis.observables.fundamental import Frequency
+from undula.analysis.regimes.classify import Verdict
+from undula.analysis.runs.integrate import carry_on
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.simulation import Simulation
+from undula.inputs.build import build_model, build_schedule, build_start
+from undula.inputs.input import parse_input
 
 #: The command line, whether it is installed or only to be imported.
 UNDULA = ("-c", "import sys; from undula.app.cli import main; sys.exit(main())")

@@ -13,12 +13,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import undula as un
-from undula.analysis.schedule import STALE_AFTER, Schedule
-from undula.analysis.simulation import Simulation
-from undula.numerics import memory as names
-from undula.numerics.integrate import advance
-from undula.numerics.schemes import NDF
-from undula.numerics.stepping import options
+from undula.analysis.run_settings import STALE_AFTER, Schedule
+from undula.analysis.runs.simulation import Simulation
+from undula.numerics.integration import stepper_state as names
+from undula.numerics.integration.schemes import NDF
+from undula.numerics.integration.step import options
+from undula.numerics.integration.time_loop import advance
 
 REPETITIONS = 5
 NEVER = np.iinfo(np.int64).max

@@ -23,13 +23,11 @@ import undula as un
 from contenders import page
 from contenders.lapack import REPEATED, best, lapack
 from contenders.orbits import AZIMUTH, Orbit, orbit
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
-from undula.compiled import FASTMATH
-from undula.numerics import memory as names
-from undula.numerics.banded import Structure, filled
-from undula.numerics.integrate import advance
-from undula.numerics.system import (
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.simulation import Simulation
+from undula.jit.compilation import FASTMATH
+from undula.numerics.integration import stepper_state as names
+from undula.numerics.integration.system import (
     factor,
     matrix,
     planar_factor,
@@ -43,6 +41,8 @@ from undula.numerics.system import (
     solve,
     structure_of,
 )
+from undula.numerics.integration.time_loop import advance
+from undula.numerics.linalg.banded import Structure, filled
 
 SEGMENTS, RTOL, BEATS = (20, 40, 100), 1e-6, 20
 NEVER = np.iinfo(np.int64).max

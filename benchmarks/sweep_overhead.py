@@ -21,16 +21,16 @@ from typing import Any
 import numpy as np
 import psutil
 
-from undula.analysis.integrate import carry_on
-from undula.analysis.run import Run
-from undula.analysis.simulation import Simulation
-from undula.app.pool import pool
-from undula.app.sweep_work import SAVE_EVERY, SweepWork
-from undula.studies.build import build_model, build_schedule, build_start
-from undula.studies.point import points
-from undula.studies.spec import parse_input
-from undula.studies.study import Study, read_study
-from undula.studies.study_store import load_study, open_study
+from undula.analysis.runs.integrate import carry_on
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.simulation import Simulation
+from undula.inputs.build import build_model, build_schedule, build_start
+from undula.inputs.input import parse_input
+from undula.sweeps.point import points
+from undula.sweeps.store import load_study, open_study
+from undula.sweeps.sweep import Study, read_study
+from undula.sweeps.work_queue import SAVE_EVERY, SweepWork
+from undula.sweeps.workers import pool
 
 #: Straight, spinning, and some that ring for long; samples as few as a sweep needs.
 TEXT = """

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 
 from contenders import page, push
 from contenders.windows import OURS, Timed, names, once
-from undula.views import style
+from undula.views.common import style
 
 QUICK = "--quick" in sys.argv
 MOTION, SEGMENTS, PERIODS = "flapping", 40, 5

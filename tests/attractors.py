@@ -21,13 +21,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uncached import uncached
-from undula.compiled import kernel
-from undula.numerics.exponents import Block, growth
-from undula.numerics.memory import start
-from undula.numerics.schemes import NDF
-from undula.numerics.stepping import options
-from undula.numerics.system import RATES, implements, matrix, residual
-from undula.numerics.tangents import advance_with_changes
+from undula.jit.compilation import kernel
+from undula.numerics.integration.lyapunov import Block, growth
+from undula.numerics.integration.schemes import NDF
+from undula.numerics.integration.step import options
+from undula.numerics.integration.stepper_state import start
+from undula.numerics.integration.system import RATES, implements, matrix, residual
+from undula.numerics.integration.variational import advance_with_changes
 
 LORENZ, TORUS = range(2)
 SIGMA, RHO, BETA = 10.0, 28.0, 8.0 / 3.0

@@ -14,9 +14,9 @@ import numpy as np
 
 import naive
 from undula.arrays import Array, ComplexArray, Links, State
-from undula.models.beads import BeadLoad
 from undula.models.chain import Chain
-from undula.models.loads import LinearLoad, Load, PointLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, TipLoad
+from undula.models.loads.beads import BeadLoad
 
 #: Whatever a chain can be told; of a list with the beads' drag each takes as many as it has.
 OPTIONS: Mapping[str, Mapping[str, Any]] = {

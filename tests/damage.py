@@ -25,17 +25,17 @@ import xarray as xr
 
 import undula as un
 from small_studies import QUICK, study_of, work_off
-from undula.analysis.borders import Borders
-from undula.analysis.stable_stretches import Change, Stretches
-from undula.app.catalogue_tasks import Job
+from undula.analysis.maps.stability_boundaries import Borders
+from undula.analysis.maps.stability_intervals import Change, Stretches
 from undula.app.cli import main
-from undula.app.sweep_work import SweepWork
 from undula.errors import InputError
-from undula.studies.borders_store import keep_borders, kept_columns
-from undula.studies.items import Task
-from undula.studies.steps_store import stored_steps
-from undula.studies.study_store import open_study
-from undula.studies.unchecked import StoredWarning
+from undula.reproduction.claims.catalogue import Task
+from undula.reproduction.tasks.task import Job
+from undula.storage.ramp_file import stored_steps
+from undula.storage.unchecked import StoredWarning
+from undula.sweeps.boundary_cache import keep_borders, kept_columns
+from undula.sweeps.store import open_study
+from undula.sweeps.work_queue import SweepWork
 
 #: How a reading ends: as without damage, refused in a sentence, computed again; or wrongly.
 SAME, TOLD, AGAIN = "same", "told", "again"

@@ -1,4 +1,4 @@
-"""Equations (`undula.numerics.problem.Equations`) with exact solutions, in plain numpy.
+"""Equations for solvers of states with exact solutions, in plain numpy.
 
 Follower (Prothero & Robinson), unknowns (u, s):
 

@@ -14,7 +14,7 @@ import typer
 from hypothesis import strategies as st
 
 from undula.app.cli import app
-from undula.studies.spec import StabilityInput, StudyInput
+from undula.inputs.input import StabilityInput, StudyInput
 
 #: Numbers that people give, and those on which programs break.
 USUAL = ("1", "2", "0.5", "8", "40", "75", "200", "0.01")

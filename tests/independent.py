@@ -9,8 +9,8 @@ from numpy.polynomial.chebyshev import Chebyshev
 from scipy.integrate import solve_ivp
 
 from undula.arrays import Array, ComplexArray
-from undula.models.loads import Load
-from undula.numerics.pencil import eigenvalues
+from undula.models.loads.analytic import Load
+from undula.numerics.linalg.pencil import eigenvalues
 
 
 def zero(function: Callable[[float, float], complex], start: tuple[float, float]) -> Array:

@@ -15,8 +15,8 @@ from scipy.integrate import quad
 
 from undula.arrays import Array, Links, State
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad
-from undula.models.profiles import ProfileLoad, TableLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad
+from undula.models.loads.user_density import ProfileLoad, TableLoad
 
 #: A complex step whose square is lost to round-off beside any length.
 _STEP = 1e-30

@@ -6,10 +6,10 @@ import numpy as np
 
 from cycles import turned, turning
 from undula.arrays import Array
-from undula.numerics.closure import Closure, Rotation
-from undula.numerics.orbits import Orbit, Search, find_orbit
-from undula.numerics.radau import radau
-from undula.numerics.shooting import Shooting
+from undula.numerics.orbits.periodic_orbit import Orbit, Search, find_orbit
+from undula.numerics.orbits.radau import radau
+from undula.numerics.orbits.shooting import Shooting
+from undula.numerics.orbits.symmetry import Closure, Rotation
 
 EXACT = Closure()
 TURNING = Closure(rotation=Rotation(turned, turning))

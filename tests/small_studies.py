@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from undula.app.sweep_work import Piece, SweepWork
-from undula.studies.point import line, points
-from undula.studies.study import Study, read_study
-from undula.studies.study_store import StudyStore, load_study, open_study
+from undula.sweeps.point import line, points
+from undula.sweeps.store import StudyStore, load_study, open_study
+from undula.sweeps.sweep import Study, read_study
+from undula.sweeps.work_queue import Piece, SweepWork
 
 #: Beats and spins of a few links, each point some milliseconds.
 QUICK = """

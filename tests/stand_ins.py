@@ -7,11 +7,11 @@ import pytest
 
 from pages import ROOT
 from small_studies import done, study_of
-from undula.analysis.kinds import kind_of
 from undula.analysis.parameters import changed, value_of
-from undula.analysis.thresholds import THRESHOLDS
+from undula.analysis.solvers.state_kinds import kind_of
+from undula.analysis.solvers.thresholds import THRESHOLDS
 from undula.app.cli import main
-from undula.studies.build import build_model
+from undula.inputs.build import build_model
 
 STUDY = """
 [model]
@@ -82,20 +82,20 @@ def _asks(question: Any) -> NoReturn:
 
 
 BEGINNINGS = {
-    "undula.app.jobs.begin": _begins,
-    "undula.app.jobs.take_up": _begins,
-    "undula.app.stepping.step_along": _begins,
-    "undula.app.stability.ask": _asks,
-    "undula.app.beginnings.load_result": _begins,
-    "undula.app.finding.find": _finds,
-    "undula.app.following.follow_along": _follows,
-    "undula.app.thresholding.tell_threshold": _tells,
-    "undula.app.thresholding.tell_thresholds": _tells,
-    "undula.app.sweeping.open_study": _begins,
-    "undula.app.sweeping.load_study": _begins,
-    "undula.app.diagrams.plot_study": _begins,
-    "undula.app.reproducing.jobs_of": _begins,
-    "undula.studies.store.load_result": _begins,
+    "undula.app.commands.run_job.begin": _begins,
+    "undula.app.commands.run_job.take_up": _begins,
+    "undula.app.commands.step.step_along": _begins,
+    "undula.app.commands.stability.ask": _asks,
+    "undula.app.commands.find_start.load_result": _begins,
+    "undula.app.commands.find.find": _finds,
+    "undula.app.commands.follow.follow_along": _follows,
+    "undula.app.commands.threshold.tell_threshold": _tells,
+    "undula.app.commands.threshold.tell_thresholds": _tells,
+    "undula.app.commands.sweep.open_study": _begins,
+    "undula.app.commands.sweep.load_study": _begins,
+    "undula.app.commands.plot_sweep.plot_study": _begins,
+    "undula.reproduction.reproduce.jobs_of": _begins,
+    "undula.storage.run_file.load_result": _begins,
 }
 
 

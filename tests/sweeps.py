@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from undula.analysis.observables import mean_position
+from undula.analysis.observables.shapes import mean_position
 
 NAMES = (
     "straight",

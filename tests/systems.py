@@ -21,13 +21,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uncached import uncached
-from undula.compiled import kernel
-from undula.numerics.integrate import advance
-from undula.numerics.memory import EQUAL_STEPS, IN_FRAME, ORDER, PLANNED_ORDER, Memory, start
-from undula.numerics.results import Status
-from undula.numerics.schemes import NDF, BackwardDifferentiation
-from undula.numerics.stepping import Options, options
-from undula.numerics.system import (
+from undula.jit.compilation import kernel
+from undula.numerics.integration.schemes import NDF, BackwardDifferentiation
+from undula.numerics.integration.status import Status
+from undula.numerics.integration.step import Options, options
+from undula.numerics.integration.stepper_state import (
+    EQUAL_STEPS,
+    IN_FRAME,
+    ORDER,
+    PLANNED_ORDER,
+    Memory,
+    start,
+)
+from undula.numerics.integration.system import (
     RATES,
     constraint_error,
     generator,
@@ -38,6 +44,7 @@ from undula.numerics.system import (
     rotate,
     weigh,
 )
+from undula.numerics.integration.time_loop import advance
 
 FOLLOWER, BEAD, SPINNER = range(3)
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import undula as un
-from undula.analysis.run import Run
+from undula.analysis.runs.run import Run
 
 
 def orders(values: list[float]) -> np.ndarray:

@@ -9,23 +9,23 @@ import numpy as np
 import pytest
 
 from refusal import complaint
-from undula.analysis import kinds
-from undula.analysis.equilibrium import find_equilibrium
-from undula.analysis.kinds import KINDS, follow
+from undula.analysis.linear.straight_branch import follow_straight
 from undula.analysis.parameters import changed, value_of
-from undula.analysis.relative_equilibrium import TurningShape
-from undula.analysis.settle_and_step import Course
-from undula.analysis.spinning import find_spinning
-from undula.analysis.states import Spinning
-from undula.analysis.straight_branch import follow_straight
-from undula.analysis.thresholds import threshold_curve
-from undula.app import following
-from undula.app.following import Way, follow_along
+from undula.analysis.ramps.ramp import Course
+from undula.analysis.solvers import state_kinds as kinds
+from undula.analysis.solvers.equilibrium import find_equilibrium
+from undula.analysis.solvers.spinning import find_spinning
+from undula.analysis.solvers.state_kinds import KINDS, follow
+from undula.analysis.solvers.thresholds import threshold_curve
+from undula.analysis.states.records import Spinning
+from undula.analysis.states.relative_equilibrium import TurningShape
+from undula.app.commands import follow as following
+from undula.app.commands.follow import Way, follow_along
 from undula.errors import InputError
-from undula.models.beads import BeadLoad
 from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.beads import BeadLoad
 
 LINKS = 6
 BODIES = {
@@ -202,7 +202,7 @@ def test_thresholds_of_turned_states_are_refused_before_the_first(name: str) -> 
 def test_the_straight_state_and_its_thresholds_name_the_parameter(
     parameter: str, start: float, end: float
 ) -> None:
-    from undula.analysis.stability import critical_curve
+    from undula.analysis.linear.stability import critical_curve
 
     body = BODIES["tip"]
     assert parameter in complaint(lambda: follow_straight(body, parameter, start, end))

@@ -86,13 +86,14 @@ def test_every_runtime_dependency_states_its_reason(package: str) -> None:
     assert re.search(rf"^\| {re.escape(package)} \|", page, re.MULTILINE)
 
 
-def test_only_views_import_plotting_libraries() -> None:
+def test_only_views_and_the_figures_of_the_paper_import_plotting_libraries() -> None:
     users = users_of("matplotlib", "mpl_toolkits", "imageio", "imageio_ffmpeg")
-    assert {name for name in users if name.split(".")[0] != "views"} == set()
+    drawing = ("views.", "reproduction.figures.")
+    assert {name for name in users if not name.startswith(drawing)} == set()
 
 
 def test_only_the_store_opens_result_files() -> None:
     libraries = users_of("h5netcdf", "h5py", "netCDF4")
     callers = {name for name, tree in parsed() if any(map(NETCDF_CALLS.match, attributes(tree)))}
     # The reading on trial is the work of another process, which reads for nobody.
-    assert libraries | callers <= {"studies.store", "studies.trial_reading"}
+    assert libraries | callers <= {"storage.run_file", "storage.trial_reading"}

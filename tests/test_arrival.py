@@ -11,16 +11,16 @@ import pytest
 import undula as un
 from refusal import complaint
 from small_studies import done, study_of
-from undula.analysis.arrival import NEAR, SLOWEST, Arrival, Lookout, motion_of, turned_by
-from undula.analysis.integrate import TIGHT
-from undula.analysis.observables import displacement
-from undula.analysis.relative_equilibrium import Disturbances
-from undula.analysis.run import Run
-from undula.analysis.schedule import Schedule
-from undula.analysis.settling import Pace
-from undula.analysis.simulation import Simulation
-from undula.numerics.system import RATES
-from undula.studies.point import point
+from undula.analysis.observables.shapes import displacement
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.early_stop import NEAR, SLOWEST, Arrival, Lookout, motion_of, turned_by
+from undula.analysis.runs.integrate import TIGHT
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.settling import Pace
+from undula.analysis.runs.simulation import Simulation
+from undula.analysis.states.relative_equilibrium import Disturbances
+from undula.numerics.integration.system import RATES
+from undula.sweeps.point import point
 
 #: As coarse as the maps are that such runs are for.
 COARSE = 1e-4

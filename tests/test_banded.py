@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from undula.models.rod import PlanarRod, SpatialRod
-from undula.numerics.banded import (
+from undula.models.rod.tables import PlanarRod, SpatialRod
+from undula.numerics.linalg.banded import (
     Structure,
     blank_kernel,
     factor_kernel,

@@ -10,7 +10,7 @@ import undula as un
 from refusal import complaint
 from small_studies import done, study_of
 from sweeps import coded, made_up
-from undula.analysis.basins import basins, wilson_interval
+from undula.analysis.maps.basins import basins, wilson_interval
 from undula.views import basin_diagram
 
 FORCES = (50.0, 100.0, 200.0, 400.0)

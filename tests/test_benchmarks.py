@@ -12,8 +12,8 @@ from contenders.solvers import Solver, solvers
 from contenders.windows import OURS, names, once
 from undula.arrays import Array
 from undula.models.filament import Filament
-from undula.models.loads import TipLoad
-from undula.models.starts import helix
+from undula.models.initial_states import helix
+from undula.models.loads.analytic import TipLoad
 
 EXTRA = "of the extra `bench`, which the tests do without: pip install -e '.[bench]'"
 SEGMENTS = 12

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from undula.arrays import Array
-from undula.numerics.banded import to_dense
-from undula.numerics.bordered import BandFactors, BorderedBand
+from undula.numerics.linalg.banded import to_dense
+from undula.numerics.linalg.bordered import BandFactors, BorderedBand
 
 SHAPES = [(1, 0), (2, 1), (7, 1), (7, 6), (30, 3), (60, 11)]
 every_shape = pytest.mark.parametrize(("rows", "half"), SHAPES)

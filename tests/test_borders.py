@@ -11,14 +11,14 @@ import xarray as xr
 import undula as un
 from refusal import complaint
 from sweeps import made_up
-from undula.analysis.borders import BORDERS, Borders, solved_borders
-from undula.analysis.convergence import extrapolated
-from undula.analysis.disagreements import disagreements
-from undula.analysis.linear_results import Crossing, Onset
-from undula.analysis.stable_stretches import Stretches, straight_stretches
-from undula.analysis.states import Flapping, Spinning
-from undula.analysis.thresholds import threshold
-from undula.studies.borders_store import NAME, keep_borders, kept_columns
+from undula.analysis.linear.results import Crossing, Onset
+from undula.analysis.maps.contradictions import disagreements
+from undula.analysis.maps.stability_boundaries import BORDERS, Borders, solved_borders
+from undula.analysis.maps.stability_intervals import Stretches, straight_stretches
+from undula.analysis.solvers.thresholds import threshold
+from undula.analysis.states.extrapolation import extrapolated
+from undula.analysis.states.records import Flapping, Spinning
+from undula.sweeps.boundary_cache import NAME, keep_borders, kept_columns
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 LOW = un.Filament(segments=8, load=un.PointLoad(75.0, position=0.4))

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from refusal import complaint
-from undula.analysis.branch_records import Bifurcation, Branch
-from undula.analysis.branches import Family, follow_branch
-from undula.analysis.observables import Range
-from undula.analysis.stability import critical_force
-from undula.analysis.straight_branch import follow_straight
+from undula.analysis.linear.stability import critical_force
+from undula.analysis.linear.straight_branch import follow_straight
+from undula.analysis.observables.shapes import Range
+from undula.analysis.states.branch import Bifurcation, Branch
+from undula.analysis.states.follow_branch import Family, follow_branch
 from undula.arrays import Array, ComplexArray
 from undula.models.filament import Filament
-from undula.models.loads import PointLoad, TipLoad
-from undula.numerics.continuation import Steps
-from undula.numerics.problem import DenseLinear, Evaluation
+from undula.models.loads.analytic import PointLoad, TipLoad
+from undula.numerics.continuation.arclength import Steps
+from undula.numerics.continuation.problem import DenseLinear, Evaluation
 
 #: A rate of change f(x; p), of real polynomials, so that it takes complex arguments.
 Field = Callable[[Array, float], Array]

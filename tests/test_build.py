@@ -8,10 +8,10 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.schedule import Schedule
-from undula.studies.build import build_model, build_schedule, build_start
-from undula.studies.spec import parse_input, read_input
-from undula.studies.store import write_run
+from undula.analysis.run_settings import Schedule
+from undula.inputs.build import build_model, build_schedule, build_start
+from undula.inputs.input import parse_input, read_input
+from undula.storage.run_file import write_run
 
 LOADS = [
     ({"profile": "tip"}, un.TipLoad(75.0)),

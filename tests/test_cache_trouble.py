@@ -13,12 +13,11 @@ import numba
 import pytest
 from numba.core import event
 
-from undula import compiled
-from undula.app import compiling
-from undula.compiled import cache
+from undula.jit import cache, compilation
+from undula.terminal import compile_notice as compiling
 
 OUTER = """
-from toy.compiled import entry, kernel
+from toy.jit.compilation import entry, kernel
 
 
 @entry("x (n)")
@@ -37,7 +36,7 @@ def beyond(x):
 """
 SHOW = """
 import numpy as np
-from toy.compiled.cache import trouble
+from toy.jit.cache import trouble
 from toy.outer import outer
 print(outer(np.ones(3)), sum(outer.stats.cache_hits.values()), trouble())
 """
@@ -51,11 +50,11 @@ def toy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return the folder of a package that compiles as ours does, with a cache beside it."""
     package = tmp_path / "toy"
     shutil.copytree(
-        Path(compiled.__file__).parent,
-        package / "compiled",
+        Path(compilation.__file__).parent,
+        package / "jit",
         ignore=shutil.ignore_patterns("__pycache__"),
     )
-    for source in (package / "compiled").glob("*.py"):
+    for source in (package / "jit").glob("*.py"):
         source.write_text(source.read_text().replace("undula", "toy"))
     (package / "__init__.py").write_text("")
     (package / "outer.py").write_text(OUTER)
@@ -168,7 +167,7 @@ def test_with_nowhere_to_write_functions_are_compiled_in_each_process(
     (toy / "file").write_text("")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(toy / "file"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(toy / "file"))
-    for sources in (toy / "toy", toy / "toy" / "compiled"):
+    for sources in (toy / "toy", toy / "toy" / "jit"):
         (sources / "__pycache__").write_text("")
     told = shown(toy)
     assert told.startswith("2.0 0 compiled kernels cannot be kept")

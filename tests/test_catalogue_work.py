@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from undula.app.catalogue_tasks import Job
-from undula.app.catalogue_work import TaskWork
-from undula.studies.items import Task
+from undula.reproduction.claims.catalogue import Task
+from undula.reproduction.tasks.queue import TaskWork
+from undula.reproduction.tasks.task import Job
 
 
 def job(folder: Path, name: str, command: str, cost: float = 1.0, needs: tuple = ()) -> Job:

@@ -12,10 +12,10 @@ import undula as un
 from chains import OPTIONS, chain, energy, random_state, tangents_of, virtual_work
 from refusal import complaint
 from undula.arrays import Array
-from undula.models.beads import BeadLoad
 from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads import DensityLoad, LinearLoad, PointLoad, TipLoad
+from undula.models.loads.analytic import DensityLoad, LinearLoad, PointLoad, TipLoad
+from undula.models.loads.beads import BeadLoad
 
 every_option = pytest.mark.parametrize("option", OPTIONS)
 every_number = pytest.mark.parametrize("links", range(1, 13))

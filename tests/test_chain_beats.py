@@ -5,11 +5,11 @@ import pytest
 
 import undula as un
 from planar_chain import beat, rate_out_of_plane
-from undula.analysis.branch_records import Branch
-from undula.analysis.states import NotFound
+from undula.analysis.states.branch import Branch
+from undula.analysis.states.records import NotFound
 from undula.arrays import Array
 from undula.models.chain import Chain
-from undula.models.loads import TipLoad
+from undula.models.loads.analytic import TipLoad
 
 
 def plain(links: int, force: float = 1.0) -> Chain:

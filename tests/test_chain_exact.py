@@ -9,11 +9,11 @@ import undula as un
 from chains import OPTIONS, chain
 from exact_chain import exact_hopf
 from refusal import complaint
-from undula.analysis.linear_results import Method, Onset
+from undula.analysis.linear.results import Method, Onset
 from undula.arrays import Array
 from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads import TipLoad
+from undula.models.loads.analytic import TipLoad
 
 ENDS = [(1.0, 1.0, 1.0), (2.0, 1.0, 0.5), (0.3, 0.2, 3.0), (5.0, 4.0, 0.1)]
 every_end = pytest.mark.parametrize(("spring", "inner", "outer"), ENDS)

@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from refusal import complaint
-from undula.models.beads import BeadLoad
+from undula.inputs.build import build_model
+from undula.inputs.input import parse_input
 from undula.models.chain import Chain
-from undula.models.loads import LinearLoad, TipLoad
-from undula.studies.build import build_model
-from undula.studies.spec import parse_input
+from undula.models.loads.analytic import LinearLoad, TipLoad
+from undula.models.loads.beads import BeadLoad
 
 CHAIN = {"kind": "chain", "links": 3}
 BEADS = {"profile": "beads"}

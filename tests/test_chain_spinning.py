@@ -8,12 +8,12 @@ from scipy.optimize import brentq
 
 import undula as un
 from chains import tangents_of, virtual_work
-from undula.analysis.branch_records import Branch
-from undula.analysis.relative_equilibrium import rotating_spectrum
+from undula.analysis.states.branch import Branch
+from undula.analysis.states.relative_equilibrium import rotating_spectrum
 from undula.arrays import Array, ComplexArray
 from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads import TipLoad
+from undula.models.loads.analytic import TipLoad
 
 FORCES = [6.1, 6.5, 7.0, 8.0, 10.0, 12.2, 20.0, 50.0, 100.0]
 

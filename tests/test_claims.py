@@ -8,13 +8,13 @@ import pytest
 
 from refusal import complaint
 from small_catalogue import small_catalogue
-from undula.app.catalogue_tasks import carry_out
 from undula.app.reproduction import RUN_COMMAND
 from undula.models.filament import Filament
-from undula.studies import claims, slips
-from undula.studies.claims import Answer, judge
-from undula.studies.items import CATALOGUE, Claim, catalogue, paper_of
-from undula.studies.measures import (
+from undula.reproduction.claims import errata as slips
+from undula.reproduction.claims import evaluate as claims
+from undula.reproduction.claims.catalogue import CATALOGUE, Claim, catalogue, paper_of
+from undula.reproduction.claims.evaluate import Answer, judge
+from undula.reproduction.claims.measures import (
     at,
     crossing,
     first_present,
@@ -23,6 +23,7 @@ from undula.studies.measures import (
     peak,
     peak_error,
 )
+from undula.reproduction.tasks.task import carry_out
 
 ITEMS = catalogue()
 ROWS = [(name, claim) for name, item in ITEMS.items() for claim in item.claims]

@@ -9,12 +9,12 @@ import pytest
 
 from refusal import complaint
 from small_catalogue import small_catalogue
-from undula.app.catalogue_tasks import Job, jobs_of
-from undula.app.claim_rows import NOT_JUDGED, row_of
 from undula.app.cli import main
-from undula.studies.claims import Answer
-from undula.studies.items import CATALOGUE, Claim, Item, catalogue, task_of
-from undula.studies.stated import Values, other_values, values_of, values_of_call
+from undula.reproduction.claims.catalogue import CATALOGUE, Claim, Item, catalogue, task_of
+from undula.reproduction.claims.evaluate import Answer
+from undula.reproduction.claims.stated_values import Values, other_values, values_of, values_of_call
+from undula.reproduction.report.claim_table import NOT_JUDGED, row_of
+from undula.reproduction.tasks.task import Job, jobs_of
 
 ITEMS = catalogue()
 CLAIMS = [(name, claim) for name, item in ITEMS.items() for claim in item.claims]

@@ -4,7 +4,7 @@ import importlib.util
 import json
 from pathlib import Path
 
-from undula.studies.items import catalogue
+from undula.reproduction.claims.catalogue import catalogue
 
 DOCS = Path(__file__).parents[1] / "docs"
 TOLD = json.loads((DOCS / "claims.json").read_text("utf-8"))

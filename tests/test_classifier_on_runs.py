@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import undula as un
-from undula.analysis.integrate import carry_on
-from undula.analysis.lyapunov import lyapunov
-from undula.analysis.periodic_state import Periodic
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
+from undula.analysis.regimes.lyapunov import lyapunov
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.integrate import carry_on
+from undula.analysis.runs.simulation import Simulation
+from undula.analysis.states.periodic_record import Periodic
 from undula.arrays import Array
+from undula.models.initial_states import leading_mode
 from undula.models.model import Model
-from undula.models.starts import leading_mode
 
 SEGMENTS = 20
 

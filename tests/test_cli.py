@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from undula.analysis.schedule import Schedule
-from undula.app.answers import finite
+from undula.analysis.run_settings import Schedule
 from undula.app.cli import main
-from undula.app.numbers_told import with_error
-from undula.app.pace import duration
-from undula.studies.store import load_checkpoint, load_result
+from undula.storage.run_file import load_checkpoint, load_result
+from undula.terminal.numbers import with_error
+from undula.terminal.output import finite
+from undula.terminal.run_progress import duration
 from undula.views import movie
 
 #: 21 samples, 0.001 T apart, of a run that takes a fraction of a second.
@@ -34,7 +34,8 @@ ENDLESS = [
 ]
 EAGER = """
 import sys
-from undula.app import cli, running
+from undula.app import cli
+from undula.app.commands import run as running
 running.SAVE_EVERY, running.SAVING_SHARE = 0.05, 1.0
 sys.exit(cli.main())
 """
@@ -220,7 +221,7 @@ def test_a_wrong_word_gets_one_sentence_and_with_json_an_object_too(word: str, a
 def test_a_folder_that_cannot_be_written_is_refused_before_computing(
     ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.app.jobs.begin", lambda *_: pytest.fail("it was begun"))
+    monkeypatch.setattr("undula.app.commands.run_job.begin", lambda *_: pytest.fail("it was begun"))
     Path("file").touch()
     status, _, told = ask("run", *TINY, "--out", "file/folder")
     assert status == 2
@@ -236,7 +237,7 @@ def test_an_existing_result_is_refused_before_computing_and_replaced_when_asked(
     mark = b"\xa9cmt\0\0\0\x16data\0\0\0\1\0\0\0\0undula"
     Path("results/run/run.mp4").write_bytes(mark)
     with monkeypatch.context() as patched:
-        patched.setattr("undula.app.jobs.begin", lambda *_: pytest.fail("it was begun"))
+        patched.setattr("undula.app.commands.run_job.begin", lambda *_: pytest.fail("it was begun"))
         status, _, told = ask("run", *TINY)
     assert status == 2
     assert "--overwrite" in told
@@ -306,7 +307,7 @@ def test_a_broken_or_foreign_file_is_refused_in_one_sentence(
 def test_figures_and_movies_are_made_from_the_stored_file_alone(
     ask: Ask, stored: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.app.drawing.movie", partial(movie, frames=4))
+    monkeypatch.setattr("undula.app.commands.drawing.movie", partial(movie, frames=4))
     assert answer(ask("plot", str(stored), "--json"))["figure"] == "run.png"
     assert answer(ask("movie", str(stored), "--json"))["movie"] == "run.mp4"
     assert ask("plot", str(stored), "--out", "made/a.pdf")[:2] == (0, "made/a.pdf\n")
@@ -339,7 +340,7 @@ def test_a_movie_that_fails_leaves_the_result_and_says_so(
     def fail(*_: object, **__: object) -> None:
         raise OSError("the video encoder failed: no space")
 
-    monkeypatch.setattr("undula.app.drawing.movie", fail)
+    monkeypatch.setattr("undula.app.commands.drawing.movie", fail)
     asked = ask("run", *TINY[:-1], "--json")
     found = answer(asked, status=3)
     assert found["movie"] is None
@@ -426,7 +427,7 @@ def test_a_fault_of_the_program_keeps_its_traceback(monkeypatch: pytest.MonkeyPa
     def fault(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("undula.studies.spec.read_input", fault)
+    monkeypatch.setattr("undula.inputs.input.read_input", fault)
     with pytest.raises(ZeroDivisionError):
         main(["run"])
 

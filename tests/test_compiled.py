@@ -12,8 +12,7 @@ import pytest
 from numba.core import codegen
 
 from uncached import uncached
-from undula import compiled
-from undula.compiled import cache
+from undula.jit import cache, compilation
 
 
 class Foreign(NamedTuple):
@@ -25,9 +24,9 @@ class Foreign(NamedTuple):
 
 Point = type("Point", (Foreign,), {"__module__": "undula.models.anything"})
 
-INNER = "from toy.compiled import kernel\n\n\n@kernel\ndef inner(x):\n    return x + {}\n"
+INNER = "from toy.jit.compilation import kernel\n\n\n@kernel\ndef inner(x):\n    return x + {}\n"
 OUTER = """
-from toy.compiled import entry
+from toy.jit.compilation import entry
 from toy.inner import inner
 
 
@@ -51,7 +50,7 @@ def package(tmp_path: Path) -> Path:
         (root / floor).mkdir(parents=True)
     (root / "one.py").write_text("a = 1\n")
     (root / "numerics" / "two.py").write_text("b = 2\n")
-    (root / "analysis" / "sums.py").write_text("from undula.compiled import entry\n")
+    (root / "analysis" / "sums.py").write_text("from undula.jit.compilation import entry\n")
     (root / "analysis" / "words.py").write_text("c = 3\n")
     return root
 
@@ -90,7 +89,7 @@ def test_compiled_functions_outside_their_floors_take_nothing_from_other_files()
             continue
         if re.search(r"import .*\b(entry|kernel|kernel_in_order)\b", text):
             taken = re.findall(r"^from (undula\S*) import", text, flags=re.MULTILINE)
-            assert set(taken) <= {"undula.compiled", "undula.lent"}, place
+            assert set(taken) <= {"undula.jit.compilation", "undula.jit.borrowed"}, place
 
 
 def test_the_digest_changes_when_a_file_comes_goes_or_is_renamed(
@@ -134,7 +133,7 @@ def test_a_kernel_is_optimised_with_what_calls_it_and_not_before(
         optimise(library)
 
     monkeypatch.setattr(codegen.JITCodeLibrary, "_optimize_final_module", noted)
-    inner = compiled.kernel(lambda x: 2.0 * x)
+    inner = compilation.kernel(lambda x: 2.0 * x)
 
     @uncached
     def outer(x: Any) -> Any:
@@ -158,8 +157,8 @@ def test_a_changed_kernel_is_compiled_anew_where_another_file_calls_it(
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # edits within a second look like none
     toy = tmp_path / "toy"
     toy.mkdir()
-    shutil.copytree(Path(compiled.__file__).parent, toy / "compiled")
-    for source in (toy / "compiled").glob("*.py"):
+    shutil.copytree(Path(compilation.__file__).parent, toy / "jit")
+    for source in (toy / "jit").glob("*.py"):
         source.write_text(source.read_text().replace("undula", "toy"))
     (toy / "outer.py").write_text(OUTER)
     (toy / "inner.py").write_text(INNER.format(1.0))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from refusal import complaint
 from undula.errors import InputError
-from undula.studies.spec import parse_input
+from undula.inputs.input import parse_input
 
 
 def complaint_on(**tables: Any) -> str:

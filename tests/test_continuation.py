@@ -10,7 +10,7 @@ import pytest
 
 from undula.arrays import Array
 from undula.errors import InputError
-from undula.numerics.continuation import (
+from undula.numerics.continuation.arclength import (
     Point,
     Steps,
     advance,
@@ -19,7 +19,7 @@ from undula.numerics.continuation import (
     solved_at,
     with_tangent,
 )
-from undula.numerics.problem import DenseLinear, Evaluation
+from undula.numerics.continuation.problem import DenseLinear, Evaluation
 
 EVERYWHERE = (-np.inf, np.inf)
 

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from refusal import complaint
-from undula.analysis.convergence import Converged, converge, extrapolated
-from undula.analysis.kinds import converged, with_error
-from undula.analysis.spinning import find_spinning
-from undula.analysis.states import NotFound, Spinning
+from undula.analysis.solvers.spinning import find_spinning
+from undula.analysis.solvers.state_kinds import converged, with_error
+from undula.analysis.states.extrapolation import Converged, converge, extrapolated
+from undula.analysis.states.records import NotFound, Spinning
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, Load, TipLoad
+from undula.models.loads.analytic import LinearLoad, Load, TipLoad
 
 COEFFICIENTS = st.floats(-10.0, 10.0)
 

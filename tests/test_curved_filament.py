@@ -12,19 +12,20 @@ from scipy.integrate import solve_ivp
 
 import undula as un
 from refusal import complaint
-from undula.analysis.integrate import carry_on
-from undula.analysis.run import Run
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
-from undula.app import jobs, running
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.integrate import carry_on
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.simulation import Simulation
+from undula.app.commands import run as running
+from undula.app.commands import run_job as jobs
 from undula.arrays import Array, Points
+from undula.inputs.build import build_model
+from undula.inputs.input import parse_input
 from undula.models.filament import Filament
 from undula.models.natural_curvature import CurvatureTable, of_pieces
-from undula.numerics.banded import to_dense
-from undula.numerics.system import RATES
-from undula.studies.build import build_model
-from undula.studies.spec import parse_input
-from undula.studies.store import load_result
+from undula.numerics.integration.system import RATES
+from undula.numerics.linalg.banded import to_dense
+from undula.storage.run_file import load_result
 
 RING = 2.0 * np.pi
 TABLE = CurvatureTable((0.0, 0.4, 1.0), (RING, 3.0, 1.0), (0.0, 4.0, -2.0))

@@ -20,13 +20,13 @@ import undula as un
 from damage import AGAIN, KINDS, SAME, TOLD, command, job, keep_answer, make_run, make_study, study
 from refusal import complaint
 from small_studies import work_off
-from undula.app.catalogue_tasks import Job
 from undula.app.cli import main
-from undula.app.sweep_work import SweepWork
-from undula.studies import trial_reading
-from undula.studies.seal import Condition, condition
-from undula.studies.study_store import load_study, open_study
-from undula.studies.unchecked import StoredWarning
+from undula.reproduction.tasks.task import Job
+from undula.storage import trial_reading
+from undula.storage.seal import Condition, condition
+from undula.storage.unchecked import StoredWarning
+from undula.sweeps.store import load_study, open_study
+from undula.sweeps.work_queue import SweepWork
 
 UNDULA = Path(sysconfig.get_path("scripts")) / "undula"
 #: Seconds for a process that damages and reads: it hangs if it takes longer on any machine.
@@ -103,7 +103,7 @@ def test_every_single_bit_of_a_small_file_matters(run: Path) -> None:
         broken[at] ^= 1 << int(chance.integers(8))
         with pytest.MonkeyPatch.context() as patched:
             # Without a line that holds good no library may see a byte, whatever else is looked at.
-            patched.setattr("undula.studies.seal.is_readable", lambda _: False)
+            patched.setattr("undula.storage.seal.is_readable", lambda _: False)
             assert condition(bytes(broken)) is Condition.DAMAGED
 
 
@@ -234,7 +234,7 @@ def test_points_of_a_damaged_or_missing_chunk_are_not_done_and_done_again(
             found = load_study(store).load()
     assert (found["status"] == 0).all()
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("undula.app.sweep_work.warn_damaged", lambda *_: None)
+        patched.setattr("undula.sweeps.work_queue.warn_damaged", lambda *_: None)
         again = open_study(store, study(made, "period"))
         work_off(SweepWork(again), again.study)
     xr.testing.assert_identical(

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from undula import Filament, TipLoad, integrate, kicked
-from undula.analysis.decay import leading_vector, linear_motion
-from undula.analysis.decay_sums import deflect, fit_step, follow, pair
-from undula.analysis.observables import arc_weights
-from undula.analysis.planes import in_plane, plane_angle
+from undula.analysis.observables.decay_sums import deflect, fit_step, follow, pair
+from undula.analysis.observables.linear_mode import leading_vector, linear_motion
+from undula.analysis.observables.planarity import in_plane, plane_angle
+from undula.analysis.observables.shapes import arc_weights
 from undula.arrays import Array, Shapes
-from undula.models.starts import leading_mode
+from undula.models.initial_states import leading_mode
 
 
 def decaying(seed: int, samples: int = 80) -> tuple[Array, Shapes]:

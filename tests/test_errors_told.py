@@ -6,10 +6,10 @@ from collections.abc import Callable
 import pytest
 
 import undula as un
-from undula.analysis.stability import method_for_all
-from undula.analysis.thresholds import Threshold, threshold, threshold_curve
+from undula.analysis.linear.stability import method_for_all
+from undula.analysis.solvers.thresholds import Threshold, threshold, threshold_curve
 from undula.app.cli import main
-from undula.app.numbers_told import BODY, LINKS, digits, on_links, told_of, with_error
+from undula.terminal.numbers import BODY, LINKS, digits, on_links, told_of, with_error
 
 TWELVE = un.Filament(segments=12, load=un.TipLoad(75.0))
 THREE = un.Chain(3, un.TipLoad(20.0))

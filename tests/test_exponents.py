@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from attractors import BETA, LORENZ, SIGMA, TORUS, Attractor, followed
-from undula.numerics.exponents import BLOCKS, TURNING_IN, Block, mean_rates
-from undula.numerics.results import Status
+from undula.numerics.integration.lyapunov import BLOCKS, TURNING_IN, Block, mean_rates
+from undula.numerics.integration.status import Status
 
 #: Sprott (2003), Chaos and Time-Series Analysis, Oxford University Press: exponents of the Lorenz
 #: system with its first parameters.

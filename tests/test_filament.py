@@ -13,9 +13,9 @@ from scipy.optimize import brentq, fsolve
 import naive
 from cases import Form, every_form, every_load, filament, random_state
 from refusal import complaint
-from undula.models import starts
+from undula.models import initial_states as starts
 from undula.models.filament import Filament
-from undula.models.loads import Load, TipLoad
+from undula.models.loads.analytic import Load, TipLoad
 from undula.models.model import Model
 
 MEMBERS = [name for name in vars(Model) if not name.startswith("_")]

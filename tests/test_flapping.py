@@ -6,16 +6,21 @@ import numpy as np
 import pytest
 
 import undula as un
-from undula.analysis import flapping
-from undula.analysis.flapping import find_flapping, flapping_family, flapping_unknowns, in_space
-from undula.analysis.observables import Range, envelope, tip_height
-from undula.analysis.run import Run
-from undula.analysis.spinning import find_spinning
-from undula.analysis.states import Flapping, NotFound, Spinning
+from undula.analysis.observables.shapes import Range, envelope, tip_height
+from undula.analysis.runs.run import Run
+from undula.analysis.solvers import flapping
+from undula.analysis.solvers.flapping import (
+    find_flapping,
+    flapping_family,
+    flapping_unknowns,
+    in_space,
+)
+from undula.analysis.solvers.spinning import find_spinning
+from undula.analysis.states.records import Flapping, NotFound, Spinning
 from undula.arrays import Array
 from undula.models.model import Model
-from undula.numerics.flow import RADAU_5, flow, linearised_flow
-from undula.numerics.shooting import Shot
+from undula.numerics.orbits.flow import RADAU_5, flow, linearised_flow
+from undula.numerics.orbits.shooting import Shot
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 CASES: dict[str, Model] = {

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from undula.app import finding
 from undula.app.cli import main
-from undula.numerics.bordered import BandFactors
+from undula.app.commands import find as finding
+from undula.numerics.linalg.bordered import BandFactors
 
 FEW = ["--set", "model.segments=8"]
 BENT = ["--set", "model.segments=4", "--set", "model.bending_ratio=2"]

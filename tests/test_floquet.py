@@ -7,10 +7,10 @@ import pytest
 
 from cycles import Carousel, Globe, Row
 from searches import TURNING, found, mirrored, near, search, shooting
-from undula.numerics.closure import Closure
-from undula.numerics.floquet import floquet, floquet_of
-from undula.numerics.flow import linearised_flow
-from undula.numerics.orbits import Orbit, find_orbit
+from undula.numerics.orbits.floquet import floquet, floquet_of
+from undula.numerics.orbits.flow import linearised_flow
+from undula.numerics.orbits.periodic_orbit import Orbit, find_orbit
+from undula.numerics.orbits.symmetry import Closure
 
 
 def ridden(intervals: int) -> Orbit:

@@ -9,10 +9,10 @@ import pytest
 from cycles import Carousel, Globe, Row
 from flows import Bead, Follower, VanDerPol, Weighed, Written
 from undula.arrays import Array
-from undula.numerics.banded import to_dense
-from undula.numerics.flow import Flow, flow, linearised_flow, resampled
-from undula.numerics.interval import Outcome, Scheme, _stage_matrix, solve_stages
-from undula.numerics.radau import radau
+from undula.numerics.linalg.banded import to_dense
+from undula.numerics.orbits.collocation import Outcome, Scheme, _stage_matrix, solve_stages
+from undula.numerics.orbits.flow import Flow, flow, linearised_flow, resampled
+from undula.numerics.orbits.radau import radau
 
 #: Stages, and intervals with which errors are neither large nor round-off.
 METHODS = [(1, [200, 400, 800]), (2, [40, 80, 160]), (3, [12, 18, 27, 40]), (4, [6, 9, 13])]

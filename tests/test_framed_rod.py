@@ -13,9 +13,9 @@ from cases import every_load, random_state
 from refusal import complaint
 from undula.arrays import Array, Points
 from undula.models.filament import Filament
-from undula.models.loads import Load
-from undula.numerics.banded import factor_kernel, full, solve_kernel, to_dense
-from undula.numerics.system import RATES
+from undula.models.loads.analytic import Load
+from undula.numerics.integration.system import RATES
+from undula.numerics.linalg.banded import factor_kernel, full, solve_kernel, to_dense
 
 TWISTS = ["paper", "rigid", "elastic"]
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from undula.analysis.frequency import (
+from undula.analysis.observables.frequency import (
     Frequency,
     rotation_frequency,
     shape_frequency,

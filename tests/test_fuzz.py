@@ -12,8 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fuzzing import Files, calls, unknown_parameters
-from undula.app.answers import BAD_INPUT, DONE, STOPPED_EARLY
 from undula.app.cli import main
+from undula.terminal.output import BAD_INPUT, DONE, STOPPED_EARLY
 
 #: No call of a body of six links takes so long [s], compilation of all kernels included.
 PATIENCE = 120

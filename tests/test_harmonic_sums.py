@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from undula.analysis.harmonic_sums import harmonic_sums, judge_fit, refine
+from undula.analysis.observables.harmonic_sums import harmonic_sums, judge_fit, refine
 from undula.arrays import Array, ComplexArray
 
 

@@ -7,12 +7,12 @@ import pytest
 
 import undula as un
 from cases import Form, every_form, filament, random_state
-from undula.analysis.health import folded
-from undula.analysis.motion import Motion
-from undula.app.run_text import run_text
+from undula.analysis.observables.trajectory import Motion
+from undula.analysis.runs.accuracy import folded
+from undula.app.commands.run_text import run_text
 from undula.arrays import Array
-from undula.models.joint import FOLDED
 from undula.models.model import Energetics
+from undula.models.rod.joint import FOLDED
 
 
 def chain(force: float, **choices: bool) -> un.Chain:

@@ -12,13 +12,13 @@ import pytest
 import undula as un
 from motions import ARC, BENT, Clock, ellipse, line, turned, wave
 from refusal import complaint
-from undula.analysis.alignment import aligned_distance, fixed_distance
-from undula.analysis.equilibrium import Equilibrium, find_equilibrium
-from undula.analysis.kinds import follow
-from undula.analysis.periodic_state import Periodic
-from undula.analysis.precession import precession
-from undula.analysis.regimes import Verdict, first_verdict
-from undula.analysis.states import NotFound
+from undula.analysis.observables.alignment import aligned_distance, fixed_distance
+from undula.analysis.observables.precession import precession
+from undula.analysis.regimes.classify import Verdict, first_verdict
+from undula.analysis.solvers.equilibrium import Equilibrium, find_equilibrium
+from undula.analysis.solvers.state_kinds import follow
+from undula.analysis.states.periodic_record import Periodic
+from undula.analysis.states.records import NotFound
 from undula.app.cli import main
 from undula.arrays import Array
 from undula.models.model import Model

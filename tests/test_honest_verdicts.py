@@ -15,14 +15,15 @@ import pytest
 import undula as un
 from refusal import complaint
 from small_studies import done, study_of
-from undula.analysis import credibility
-from undula.analysis.run import Run
-from undula.analysis.schedule import Ending, Schedule
-from undula.analysis.settle_and_step import Course, settle_and_step
-from undula.analysis.simulation import Simulation
+from undula.analysis.ramps.ramp import Course, settle_and_step
+from undula.analysis.regimes import names, names_without_symmetry
+from undula.analysis.run_settings import Ending, Schedule
+from undula.analysis.runs import credibility
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.simulation import Simulation
 from undula.arrays import State
+from undula.models.initial_states import leading_rate
 from undula.models.model import Model
-from undula.models.starts import leading_rate
 
 UNDULA = str(Path(sysconfig.get_path("scripts")) / "undula")
 SEGMENTS = 10
@@ -326,10 +327,8 @@ def test_a_bent_body_that_starts_straight_has_not_settled_before_it_moves() -> N
 def test_the_glossary_names_every_verdict() -> None:
     page = (Path(__file__).parent.parent / "docs" / "glossary.md").read_text(encoding="utf-8")
     (row,) = (line for line in page.splitlines() if line.startswith("| verdict "))
-    words = Path(credibility.__file__).with_name("naming.py").read_text(encoding="utf-8")
-    words += (
-        Path(credibility.__file__).parent.joinpath("naming_held.py").read_text(encoding="utf-8")
-    )
+    words = Path(names.__file__).read_text(encoding="utf-8")
+    words += Path(names_without_symmetry.__file__).read_text(encoding="utf-8")
     known = {"straight", "undecided", "chaotic"} | {
         line.split("|")[1].strip() for line in words.splitlines() if line.startswith("| ")
     }

@@ -11,11 +11,11 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
-from undula.models import starts
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.simulation import Simulation
+from undula.inputs.input import parse_input
+from undula.models import initial_states as starts
 from undula.models.natural_curvature import CurvatureTable
-from undula.studies.spec import parse_input
 
 UNDULA = str(Path(sysconfig.get_path("scripts")) / "undula")
 EIGHT = un.Filament(8, un.TipLoad(75.0))

@@ -20,9 +20,11 @@ from systems import (
     sections_of,
 )
 from uncached import uncached
-from undula.numerics.control import rescale
-from undula.numerics.control import turn_history as turn_history_as_written
-from undula.numerics.memory import (
+from undula.numerics.integration.schemes import SCHEMES, BackwardDifferentiation
+from undula.numerics.integration.status import Status
+from undula.numerics.integration.step_size import rescale
+from undula.numerics.integration.step_size import turn_history as turn_history_as_written
+from undula.numerics.integration.stepper_state import (
     FRAME_CHANGES,
     IN_FRAME,
     STEP,
@@ -30,9 +32,7 @@ from undula.numerics.memory import (
     TIME,
     Memory,
 )
-from undula.numerics.results import Status
-from undula.numerics.schemes import SCHEMES, BackwardDifferentiation
-from undula.numerics.system import RATES
+from undula.numerics.integration.system import RATES
 
 turn_history = uncached(turn_history_as_written)
 

@@ -15,11 +15,11 @@ from typing import Any
 import pytest
 
 import undula as un
-from undula.analysis.interrupts import ENDINGS, endings_heard, interruptible
-from undula.app.answers import INTERRUPTED
 from undula.app.cli import main
-from undula.studies.steps_store import load_steps
-from undula.studies.store import load_result
+from undula.interrupts import ENDINGS, endings_heard, interruptible
+from undula.storage.ramp_file import load_steps
+from undula.storage.run_file import load_result
+from undula.terminal.output import INTERRUPTED
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 #: Processes may have to compile the kernels first.
@@ -27,7 +27,8 @@ PATIENCE = 300.0
 #: The command, which tells its progress at once and all the time.
 TALKING = """
 import sys
-from undula.app import cli, meter
+from undula.app import cli
+from undula.terminal import meter
 meter.SECONDS_BETWEEN_LINES = 0.0
 sys.exit(cli.main())
 """
@@ -73,7 +74,7 @@ def test_a_signal_that_is_sent_twice_at_once_is_one_request(ending: signal.Signa
 def test_a_later_signal_ends_at_once(
     ending: signal.Signals, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.analysis.interrupts._SAME", 0.0)
+    monkeypatch.setattr("undula.interrupts._SAME", 0.0)
 
     def twice() -> None:
         with endings_heard(), interruptible():
@@ -136,7 +137,7 @@ def test_a_series_of_steps_keeps_its_steps(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     # In the moment in which the first step is stored.
-    monkeypatch.setattr("undula.app.stepping._Keeper.__call__", sends(ending, times=2))
+    monkeypatch.setattr("undula.app.commands.step._Keeper.__call__", sends(ending, times=2))
     words = ["step", *FEW, "--along", "load.force=10:30:10", "--out", str(tmp_path), "--json"]
     assert main(words) == 3
     answer, told = answered(capsys)
@@ -150,7 +151,7 @@ def test_a_branch_is_told_as_far_as_it_was_followed(
     ending: signal.Signals, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     send = sends(ending)
-    monkeypatch.setattr("undula.analysis.branches.unstable", lambda _: send() or 0)
+    monkeypatch.setattr("undula.analysis.states.follow_branch.unstable", lambda _: send() or 0)
     words = ["follow", "spinning", "--set", "model.segments=4", "--along", "load.force=60:200"]
     assert main([*words, "--json"]) == 3
     answer, told = answered(capsys)
@@ -164,7 +165,9 @@ def test_a_branch_is_told_as_far_as_it_was_followed(
 def test_a_curve_of_thresholds_is_told_as_far_as_it_is_known(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("undula.analysis.thresholds.critical_force", _and_send(signal.SIGTERM))
+    monkeypatch.setattr(
+        "undula.analysis.solvers.thresholds.critical_force", _and_send(signal.SIGTERM)
+    )
     words = ["threshold", "onset", "--along", "model.drag_ratio=1:2:5", "--json"]
     assert main([*words, "--plot", str(tmp_path / "curve.png")]) == 3
     answer, told = answered(capsys)
@@ -175,7 +178,7 @@ def test_a_curve_of_thresholds_is_told_as_far_as_it_is_known(
 
 
 def _and_send(ending: signal.Signals) -> Any:
-    from undula.analysis.stability import critical_force
+    from undula.analysis.linear.stability import critical_force
 
     def found(*given: Any, **options: Any) -> Any:
         signal.raise_signal(ending)
@@ -189,7 +192,7 @@ def test_exponents_that_are_stopped_leave_the_run_and_say_so(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr("undula.analysis.lyapunov._directions", lambda *_: send() or 1)
+    monkeypatch.setattr("undula.analysis.regimes.lyapunov._directions", lambda *_: send() or 1)
     send = sends(signal.SIGTERM)
     assert main(_spinning(tmp_path, "--lyapunov")) == 3
     answer, told = answered(capsys)
@@ -203,10 +206,12 @@ def test_exponents_that_are_stopped_leave_the_run_and_say_so(
 def test_exponents_heed_the_budget_and_show_how_far_they_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("undula.app.meter.SECONDS_BETWEEN_LINES", 0.0)
+    monkeypatch.setattr("undula.terminal.meter.SECONDS_BETWEEN_LINES", 0.0)
     # What takes no time without this takes longer than the budget at the third block.
     blocks = iter(range(400))
-    monkeypatch.setattr("undula.analysis.lyapunov._directions", lambda *_: _slow(next(blocks)))
+    monkeypatch.setattr(
+        "undula.analysis.regimes.lyapunov._directions", lambda *_: _slow(next(blocks))
+    )
     assert main(_spinning(tmp_path, "--lyapunov", "--budget", "4")) == 3
     answer, told = answered(capsys)
     assert answer["without_lyapunov"] == "they were out of their budget of time"
@@ -231,7 +236,7 @@ def test_a_command_without_a_result_says_that_it_was_interrupted(
     def find(*_: object, **__: object) -> None:
         signal.raise_signal(signal.SIGTERM)
 
-    monkeypatch.setattr("undula.app.finding.find", find)
+    monkeypatch.setattr("undula.app.commands.find.find", find)
     assert main(["find", "spinning", "--set", "model.segments=4"]) == 130
     said = capsys.readouterr()
     assert (said.out, said.err.count("\n")) == ("", 1)

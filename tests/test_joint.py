@@ -4,7 +4,7 @@ from decimal import Decimal, localcontext
 
 import pytest
 
-from undula.models.joint import stiffening, stiffening_curvature, stiffening_slope
+from undula.models.rod.joint import stiffening, stiffening_curvature, stiffening_slope
 
 # Both sides of the switch at c = 0.94 between series and closed form, the folded end, and the far
 # side of aligned, c > 1, which iterates reach whose links are too long.

@@ -8,7 +8,7 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import Legendre
 
 from undula.arrays import Array, Points
-from undula.numerics.legendre import gauss, legendre_elements
+from undula.numerics.linalg.legendre import gauss, legendre_elements
 
 #: One element, two alike, three that differ by a factor of twenty, and a short one at the clamp.
 DIVISIONS = [(0.0, 1.0), (0.0, 0.5, 1.0), (0.0, 0.03, 0.37, 1.0), (0.0, 1e-3, 1.0)]

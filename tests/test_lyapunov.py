@@ -14,13 +14,13 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.finite_separation import Separation, finite_separation
-from undula.analysis.lyapunov import Lyapunov, NotFollowed, lyapunov
+from undula.analysis.regimes.lyapunov import Lyapunov, NotFollowed, lyapunov
+from undula.analysis.runs.finite_separation import Separation, finite_separation
 from undula.app.cli import main
 from undula.arrays import Array
 from undula.models.model import Model
-from undula.numerics.exponents import Block, growth
-from undula.numerics.results import Status
+from undula.numerics.integration.lyapunov import Block, growth
+from undula.numerics.integration.status import Status
 
 SEGMENTS = 20
 #: A true value is farther off than so many statistical errors once in 400 times.
@@ -238,7 +238,7 @@ def test_a_motion_that_cannot_be_followed_is_a_value_with_advice(
     model = filament(75.0)
     x = un.kicked(model, 0.1)
     with monkeypatch.context() as patch:
-        patch.setattr("undula.analysis.lyapunov.growth", failed)
+        patch.setattr("undula.analysis.regimes.lyapunov.growth", failed)
         found = lyapunov(model, x, 0.1)
         assert isinstance(found, NotFollowed)
         assert "could not be followed beyond t = 0.0002" in found.reason

@@ -12,12 +12,14 @@ import undula
 SOURCE = Path(undula.__file__).parent
 #: Rooms that know nothing of the command line.
 ROOMS = ("analysis", "models", "numerics")
-#: Of the studies those that read nothing that is typed and no file that a command makes.
-PURE = (
-    *("build", "blocks", "claims", "complaints", "differences", "items", "measures"),
-    *("model_tables", "point", "ranges", "slips", "strict_table", "study", "study_columns"),
-    *("study_measures", "study_tables", "tables"),
-)
+#: Of the other packages the files that read nothing that is typed and no file that a command makes.
+PURE = {
+    "inputs": ("build", "messages", "model_tables", "ranges", "run_tables", "sweep_table", "table"),
+    "sweeps": ("blocks", "point", "sweep"),
+    "schema": ("sweep_variables",),
+    "storage": ("differences",),
+    "reproduction/claims": ("catalogue", "errata", "evaluate", "measures", "sweep_measures"),
+}
 COMMANDS = (
     *("run", "resume", "plot", "stability", "find", "follow", "threshold", "step", "sweep"),
     *("status", "reproduce", "units", "movie"),
@@ -26,8 +28,8 @@ NAMED = re.compile(rf"\bundula ({'|'.join(COMMANDS)})\b|(?<![\w-])--[a-z]")
 
 
 def modules() -> list[Path]:
-    studies = [SOURCE / "studies" / f"{name}.py" for name in PURE]
-    return sorted([*(path for room in ROOMS for path in (SOURCE / room).glob("*.py")), *studies])
+    pure = [SOURCE / room / f"{name}.py" for room, names in PURE.items() for name in names]
+    return sorted([*(path for room in ROOMS for path in (SOURCE / room).rglob("*.py")), *pure])
 
 
 def texts(tree: ast.Module) -> Iterator[tuple[int, str]]:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from undula.arrays import Array
-from undula.numerics.newton import Convergence, newton
-from undula.numerics.problem import DenseLinear, Evaluation
+from undula.numerics.continuation.newton import Convergence, newton
+from undula.numerics.continuation.problem import DenseLinear, Evaluation
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from undula.analysis.alignment import aligned_distance
-from undula.analysis.observables import (
+from undula.analysis.observables.alignment import aligned_distance
+from undula.analysis.observables.planarity import in_plane, planarity, plane_angle
+from undula.analysis.observables.shapes import (
     displacement,
     envelope,
     mean_position,
@@ -15,7 +16,6 @@ from undula.analysis.observables import (
     tip_radius,
     winding_angle,
 )
-from undula.analysis.planes import in_plane, planarity, plane_angle
 from undula.arrays import Array
 
 ANGLES = st.floats(-np.pi, np.pi)

@@ -11,11 +11,11 @@ from cycles import Carousel, Globe, Row
 from flows import VanDerPol, Weighed
 from searches import EXACT, TURNING, found, mirrored, near, search, shooting
 from undula.arrays import Array
-from undula.numerics.closure import Closure
-from undula.numerics.interval import Outcome
-from undula.numerics.newton import newton
-from undula.numerics.orbits import find_orbit, time_error
-from undula.numerics.shooting import Shooting, admissible
+from undula.numerics.continuation.newton import newton
+from undula.numerics.orbits.collocation import Outcome
+from undula.numerics.orbits.periodic_orbit import find_orbit, time_error
+from undula.numerics.orbits.shooting import Shooting, admissible
+from undula.numerics.orbits.symmetry import Closure
 
 
 @pytest.mark.parametrize("equations", [Row(), Row(count=3), Globe()], ids=repr)

@@ -19,13 +19,13 @@ from refusal import complaint
 from small_catalogue import small_catalogue
 from small_studies import AXES, QUICK, study_of
 from undula.app.cli import main
-from undula.app.marks import carries_mark
-from undula.app.outputs import claimed
-from undula.app.report_folder import MARK, report_claimed
-from undula.studies.study_store import open_study
-from undula.studies.whole_file import write_whole
+from undula.reproduction.tasks.folder import MARK, report_claimed
+from undula.storage.atomic import write_whole
+from undula.storage.marks import carries_mark
+from undula.storage.outputs import claimed
+from undula.sweeps.store import open_study
 from undula.views import movie
-from undula.views.figure_file import figure_bytes
+from undula.views.common.figure_file import figure_bytes
 
 TINY = ["--set", "model.segments=8", "--set", "time.until=0.02", "--set", "time.samples=21"]
 #: A run that would take minutes, and stores what it has as often as it can.
@@ -35,14 +35,15 @@ ENDLESS = [
 ]
 EAGER = """
 import sys
-from undula.app import cli, running
+from undula.app import cli
+from undula.app.commands import run as running
 running.SAVE_EVERY, running.SAVING_SHARE = 0.05, 1.0
 sys.exit(cli.main())
 """
 HOLDER = """
 import sys, time
 from pathlib import Path
-from undula.app.outputs import claimed
+from undula.storage.outputs import claimed
 with claimed(*map(Path, sys.argv[1:])):
     print("held", flush=True)
     time.sleep(600)
@@ -60,7 +61,7 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(autouse=True, scope="module")
 def _short_movies() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("undula.app.drawing.movie", partial(movie, frames=4))
+        patched.setattr("undula.app.commands.drawing.movie", partial(movie, frames=4))
         yield
 
 
@@ -289,7 +290,7 @@ def test_a_view_of_others_is_told_before_a_run_begins(
     name: str, refused: Callable[..., str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path(name).write_bytes(MINE)
-    monkeypatch.setattr("undula.app.jobs.begin", lambda *_: pytest.fail("it was begun"))
+    monkeypatch.setattr("undula.app.commands.run_job.begin", lambda *_: pytest.fail("it was begun"))
     assert f"{name} does not carry the mark" in refused("run", *TINY, "--out", ".")
     assert files_of() == {name: MINE}
 
@@ -360,7 +361,9 @@ def test_a_figure_of_others_is_told_before_steps_are_made(
     refused: Callable[..., str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path("steps.png").write_bytes(MINE)
-    monkeypatch.setattr("undula.app.stepping.settle_and_step", lambda *_, **__: pytest.fail("made"))
+    monkeypatch.setattr(
+        "undula.app.commands.step.settle_and_step", lambda *_, **__: pytest.fail("made")
+    )
     assert "steps.png does not carry the mark" in refused(
         "step", "--along", "load.force=1:2:1", "--out", "."
     )
@@ -374,7 +377,7 @@ def test_an_answer_is_told_where_its_figure_cannot_be_written(
         Path("figure.png").write_bytes(MINE)
         return asked(*_)
 
-    from undula.app import stability
+    from undula.app.commands import stability
 
     asked = stability.ask
     monkeypatch.setattr(stability, "ask", ask)

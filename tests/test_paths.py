@@ -12,8 +12,8 @@ from refusal import complaint
 from small_studies import AXES, QUICK, study_of
 from undula.app.cli import app, main
 from undula.app.options import a_file, a_path
-from undula.studies.file_names import any_name, file_name
-from undula.studies.study_store import open_study
+from undula.inputs.file_names import any_name, file_name
+from undula.sweeps.store import open_study
 from without_rights import are_kept_out, run_without_rights
 
 TINY = "--set model.segments=8 --set time.until=0.02 --set time.samples=21 --no-movie"

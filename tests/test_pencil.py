@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from undula.arrays import Array
-from undula.numerics.bialternate import coalescences, crossings
-from undula.numerics.pencil import LinearPencil, eigenpairs, eigenvalues, reduced
-from undula.numerics.singular import refine_coalescence, refine_crossing
+from undula.numerics.linalg.bialternate import coalescences, crossings
+from undula.numerics.linalg.critical_points import refine_coalescence, refine_crossing
+from undula.numerics.linalg.pencil import LinearPencil, eigenpairs, eigenvalues, reduced
 
 #: Constant and linear part of a block A(p).
 Block = tuple[Array, Array]

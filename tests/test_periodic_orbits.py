@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 
 from refusal import complaint
-from undula.analysis.births import Birth, births
-from undula.analysis.branch_records import Bifurcation
-from undula.analysis.integrate import integrate
-from undula.analysis.kinds import follow_from_onset
-from undula.analysis.periodic_orbits import follow_born
-from undula.analysis.periodic_search import find_periodic
-from undula.analysis.periodic_state import Periodic
-from undula.analysis.run import Run
-from undula.analysis.spinning import find_spinning
-from undula.analysis.states import Flapping, NotFound
-from undula.analysis.thresholds import Threshold, threshold
+from undula.analysis.runs.integrate import integrate
+from undula.analysis.runs.run import Run
+from undula.analysis.solvers.criticality import Birth, births
+from undula.analysis.solvers.periodic_orbits import follow_born
+from undula.analysis.solvers.periodic_search import find_periodic
+from undula.analysis.solvers.spinning import find_spinning
+from undula.analysis.solvers.state_kinds import follow_from_onset
+from undula.analysis.solvers.thresholds import Threshold, threshold
+from undula.analysis.states.branch import Bifurcation
+from undula.analysis.states.periodic_record import Periodic
+from undula.analysis.states.records import Flapping, NotFound
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, PointLoad, TipLoad
-from undula.models.starts import from_state, kicked
+from undula.models.initial_states import from_state, kicked
+from undula.models.loads.analytic import LinearLoad, PointLoad, TipLoad
 
 STRONG = Filament(12, TipLoad(350.0))
 

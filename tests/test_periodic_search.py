@@ -11,11 +11,11 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.alignment import aligned_distance
-from undula.analysis.periodic_guesses import Seen
-from undula.analysis.periodic_search import come_to
-from undula.analysis.returns import recurrence
-from undula.analysis.states import NotFound
+from undula.analysis.observables.alignment import aligned_distance
+from undula.analysis.regimes.recurrence import recurrence
+from undula.analysis.solvers.periodic_guesses import Seen
+from undula.analysis.solvers.periodic_search import come_to
+from undula.analysis.states.records import NotFound
 
 THREE = un.Chain(3, un.TipLoad(100.0))
 WINDMILL = ["--set", "model.kind=chain", "--set", "model.links=3", "--set", "load.force=100"]

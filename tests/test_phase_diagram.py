@@ -20,15 +20,15 @@ from matplotlib.figure import Figure
 
 from refusal import complaint
 from sweeps import coded, made_up, path_of, shape_of
-from undula.analysis.borders import Borders
-from undula.analysis.stable_stretches import Change, Stretches
+from undula.analysis.maps.stability_boundaries import Borders
+from undula.analysis.maps.stability_intervals import Change, Stretches
 from undula.app.cli import main
-from undula.studies.borders_store import NAME, keep_borders
-from undula.studies.study import read_study
-from undula.studies.study_store import load_study, open_study
+from undula.sweeps.boundary_cache import NAME, keep_borders
+from undula.sweeps.store import load_study, open_study
+from undula.sweeps.sweep import read_study
 from undula.views import gallery, mean_paths, phase_diagram, phase_page
-from undula.views.page_traces import plain
-from undula.views.phase_axes import scale_of
+from undula.views.sweep.axes import scale_of
+from undula.views.sweep.page_traces import plain
 
 FORCES = tuple(np.geomspace(20.0, 640.0, 6).tolist())  # 20, 40, ..., 640
 EXPONENTS = (0.0, 1.0, 2.0, 3.0)

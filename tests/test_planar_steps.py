@@ -8,14 +8,14 @@ import pytest
 
 from cases import Form, filament
 from uncached import uncached
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.simulation import Simulation
 from undula.arrays import Array, State
-from undula.models import starts
+from undula.models import initial_states as starts
 from undula.models.filament import Filament
-from undula.models.loads import TipLoad
-from undula.numerics.memory import PLANAR, STEPS
-from undula.numerics.system import plane, size
+from undula.models.loads.analytic import TipLoad
+from undula.numerics.integration.stepper_state import PLANAR, STEPS
+from undula.numerics.integration.system import plane, size
 
 #: Beats in a plane are stable in space.
 FLAPPING = Filament(12, TipLoad(200.0))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from undula.numerics.radau import interpolation, radau
+from undula.numerics.orbits.radau import interpolation, radau
 
 every_table = pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 

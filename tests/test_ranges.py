@@ -3,7 +3,7 @@
 import pytest
 
 from refusal import complaint
-from undula.studies.ranges import parse_axis, parse_values
+from undula.inputs.ranges import parse_axis, parse_values
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,11 @@
 import numpy as np
 
 import undula as un
-from undula.analysis.close_up import close_up
-from undula.analysis.recent import KEPT, Recent, parts_of
-from undula.analysis.run import Run
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.fine_tail import close_up
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.sample_buffer import KEPT, Recent, parts_of
+from undula.analysis.runs.simulation import Simulation
 
 
 def counted(first: int, last: int) -> np.ndarray:

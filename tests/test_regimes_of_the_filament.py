@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import undula as un
-from undula.analysis.decay import linear_motion
-from undula.analysis.run import Run
-from undula.models.starts import leading_mode
+from undula.analysis.observables.linear_mode import linear_motion
+from undula.analysis.runs.run import Run
+from undula.models.initial_states import leading_mode
 
 SEGMENTS = 20
 

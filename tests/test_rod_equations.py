@@ -21,10 +21,10 @@ from cases import (
 )
 from uncached import uncached
 from undula.arrays import Array
-from undula.models import starts
+from undula.models import initial_states as starts
 from undula.models.filament import Filament
-from undula.models.loads import Load
-from undula.numerics.system import size
+from undula.models.loads.analytic import Load
+from undula.numerics.integration.system import size
 
 BENDS = [0.3, 1.0, 2.0]
 every_bend = pytest.mark.parametrize("bend", BENDS)

@@ -10,8 +10,8 @@ from cases import Form, every_drag_ratio, every_form, every_free_form, every_loa
 from cases import random_state as random_shape
 from undula.arrays import Array
 from undula.models.filament import Filament
-from undula.models.loads import Load
-from undula.numerics.banded import to_dense
+from undula.models.loads.analytic import Load
+from undula.numerics.linalg.banded import to_dense
 
 every_seed = pytest.mark.parametrize("seed", range(3))
 

@@ -17,12 +17,11 @@ from cases import (
 )
 from uncached import uncached
 from undula.arrays import Array, State
-from undula.models import starts
+from undula.models import initial_states as starts
 from undula.models.filament import Filament
-from undula.models.loads import Load
-from undula.models.rod_matrix import exact_derivative
-from undula.numerics.banded import to_dense
-from undula.numerics.system import (
+from undula.models.loads.analytic import Load
+from undula.models.rod.newton_matrix import exact_derivative
+from undula.numerics.integration.system import (
     factor,
     generator,
     matrix,
@@ -33,6 +32,7 @@ from undula.numerics.system import (
     solve,
     structure_of,
 )
+from undula.numerics.linalg.banded import to_dense
 
 every_rigid_form = pytest.mark.parametrize("form", RIGID_FORMS, ids=str)
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from undula.analysis.observables import envelope
-from undula.analysis.sample_sums import (
+from undula.analysis.observables.sample_sums import (
     largest_imbalance,
     line_slope,
     mean_and_deviation,
     still_ahead,
 )
+from undula.analysis.observables.shapes import envelope
 from undula.arrays import Array
 
 

@@ -18,9 +18,9 @@ from systems import (
     follow,
     pinned,
 )
-from undula.numerics.memory import FAILED, STEPS
-from undula.numerics.results import Status
-from undula.numerics.schemes import SCHEMES, BackwardDifferentiation
+from undula.numerics.integration.schemes import SCHEMES, BackwardDifferentiation
+from undula.numerics.integration.status import Status
+from undula.numerics.integration.stepper_state import FAILED, STEPS
 
 ORDERS = range(1, 6)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import undula as un
-from undula.analysis.settling import (
+from undula.analysis.runs.settling import (
     MANY_REPETITIONS,
     NOISE_IN_RTOL,
     REPETITIONS,

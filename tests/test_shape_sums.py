@@ -3,11 +3,16 @@
 import numpy as np
 import pytest
 
-from undula.analysis.alignment import Compare, aligned_distance, fixed_distance, largest_distance
-from undula.analysis.observables import arc_weights, displacement, mean_position, transverse
-from undula.analysis.planes import planarity, plane_angle
-from undula.analysis.shape_sums import gather, largest_bend, link_squares
-from undula.analysis.turning import lowest_direction
+from undula.analysis.observables.alignment import (
+    Compare,
+    aligned_distance,
+    fixed_distance,
+    largest_distance,
+)
+from undula.analysis.observables.planarity import planarity, plane_angle
+from undula.analysis.observables.rotation import lowest_direction
+from undula.analysis.observables.shape_sums import gather, largest_bend, link_squares
+from undula.analysis.observables.shapes import arc_weights, displacement, mean_position, transverse
 from undula.arrays import Array
 
 # Sums of some hundred numbers of order one, in another order.

@@ -12,16 +12,16 @@ import pytest
 from numba.core.dispatcher import Dispatcher
 
 import undula
-import undula.models.rod_sizes as _registers  # noqa: F401
+import undula.models.rod.sizes as _registers  # noqa: F401
 from undula.arrays import Array
-from undula.compiled.sizes import Declared, declared
+from undula.jit.sizes import Declared, declared
 from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads import TipLoad
-from undula.models.rod import RODS
-from undula.numerics.memory import Memory
-from undula.numerics.stepping import Options
-from undula.numerics.system import belongs, derivative_width, matrix_width
+from undula.models.loads.analytic import TipLoad
+from undula.models.rod.tables import RODS
+from undula.numerics.integration.step import Options
+from undula.numerics.integration.stepper_state import Memory
+from undula.numerics.integration.system import belongs, derivative_width, matrix_width
 
 LOAD = TipLoad(50.0)
 #: One body of each kind of rod.
@@ -202,7 +202,7 @@ def test_the_tables_of_a_rod_have_to_fit_one_another(body: Any) -> None:
 
 @pytest.mark.parametrize("count", [0, 6])
 def test_a_memory_of_an_order_that_it_has_no_differences_for_is_refused(count: int) -> None:
-    name, system = "undula.numerics.integrate.advance", BODIES[0].system
+    name, system = "undula.numerics.integration.time_loop.advance", BODIES[0].system
     counts = np.ones(12, np.int64)
     counts[1] = count
     with pytest.raises(ValueError, match="not fit"):
@@ -220,7 +220,7 @@ def test_places_outside_of_an_array_are_refused() -> None:
 
 def test_an_array_with_gaps_is_read_as_what_it_is() -> None:
     values = np.arange(12.0).reshape(6, 2)
-    mean = entries()["undula.analysis.sample_sums.mean_and_deviation"]
+    mean = entries()["undula.analysis.observables.sample_sums.mean_and_deviation"]
     assert mean(values[:, 1]) == mean(np.ascontiguousarray(values[:, 1]))
 
 

@@ -9,11 +9,11 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.solved_branch import states_along
-from undula.analysis.solved_points import solved_line, solved_record
-from undula.analysis.stability import spectrum
-from undula.analysis.states import Flapping, NotFound, Spinning
-from undula.analysis.thresholds import threshold
+from undula.analysis.linear.stability import spectrum
+from undula.analysis.maps.stability_along_force import solved_line, solved_record
+from undula.analysis.maps.states_at_forces import states_along
+from undula.analysis.solvers.thresholds import threshold
+from undula.analysis.states.records import Flapping, NotFound, Spinning
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 LOW = un.Filament(segments=8, load=un.PointLoad(75.0, position=0.4))

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from refusal import complaint
-from undula.studies.spec import (
+from undula.inputs.input import (
     RunInput,
     StabilityInput,
     parse_input,

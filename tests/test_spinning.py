@@ -13,16 +13,16 @@ from scipy.signal import argrelmax
 import undula
 from cases import filament, random_state
 from refusal import complaint
-from undula.analysis.kinds import converged, follow
-from undula.analysis.relative_equilibrium import TurningShape
-from undula.analysis.spinning import FORCE, find_spinning
-from undula.analysis.states import NotFound, Spinning
-from undula.analysis.thresholds import threshold
+from undula.analysis.solvers.spinning import FORCE, find_spinning
+from undula.analysis.solvers.state_kinds import converged, follow
+from undula.analysis.solvers.thresholds import threshold
+from undula.analysis.states.records import NotFound, Spinning
+from undula.analysis.states.relative_equilibrium import TurningShape
 from undula.arrays import Array
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
-from undula.models.starts import from_state, kicked, planar
-from undula.numerics.continuation import solved_at
+from undula.models.initial_states import from_state, kicked, planar
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.numerics.continuation.arclength import solved_at
 
 SPINNING_MODELS = [
     Filament(12, TipLoad(40.0)),

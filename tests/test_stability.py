@@ -19,15 +19,15 @@ from independent import (
     uniform_determinant,
     zero,
 )
-from undula.analysis.linear_results import Method, Onset
-from undula.analysis.linearisations import AssumedModes, Polynomials, linearised
-from undula.analysis.onset import find_onset
-from undula.analysis.stability import critical_force, spectrum
+from undula.analysis.linear.onset import find_onset
+from undula.analysis.linear.pencils import AssumedModes, Polynomials, linearised
+from undula.analysis.linear.results import Method, Onset
+from undula.analysis.linear.stability import critical_force, spectrum
 from undula.arrays import ComplexArray
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
-from undula.models.profiles import TableLoad
-from undula.models.starts import leading_mode
+from undula.models.initial_states import leading_mode
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.user_density import TableLoad
 
 PUBLISHED = tomllib.loads((Path(__file__).parent / "data" / "thresholds.toml").read_text())
 NAMED = {"tip": TipLoad(1.0), "uniform": LinearLoad(1.0)}

@@ -8,12 +8,12 @@ import pytest
 import undula as un
 from cases import ALL_LOADS, every_form, filament
 from refusal import complaint
-from undula.analysis.decay import linear_motion
-from undula.analysis.linear_results import Method
-from undula.analysis.stability import critical_curve, critical_force, growth_curve, spectrum
+from undula.analysis.linear.results import Method
+from undula.analysis.linear.stability import critical_curve, critical_force, growth_curve, spectrum
+from undula.analysis.observables.linear_mode import linear_motion
 from undula.models.filament import Filament
-from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
-from undula.models.profiles import TableLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.user_density import TableLoad
 
 METHODS: list[Method] = ["spectral", "modes", "discrete"]
 every_method = pytest.mark.parametrize("method", METHODS)

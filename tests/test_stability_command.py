@@ -360,7 +360,9 @@ def test_a_figure_replaces_nothing_unless_told_to(
 ) -> None:
     Path("mine.pdf").write_text("mine")
     with monkeypatch.context() as patched:
-        patched.setattr("undula.app.stability.ask", lambda *_: pytest.fail("it was computed"))
+        patched.setattr(
+            "undula.app.commands.stability.ask", lambda *_: pytest.fail("it was computed")
+        )
         assert "--overwrite" in refused(ask("--forces", "10", "--plot", "mine.pdf", "--json"))
     assert Path("mine.pdf").read_text() == "mine"
     assert ask("--forces", "10,20", "--plot", "mine.pdf", "--overwrite")[0] == 0
@@ -413,7 +415,7 @@ def test_thresholds_that_do_not_exist_are_told_as_none(ask: Ask) -> None:
 
 
 def test_progress_is_told_apart_from_the_answer(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("undula.app.meter.SECONDS_BETWEEN_LINES", 0.0)
+    monkeypatch.setattr("undula.terminal.meter.SECONDS_BETWEEN_LINES", 0.0)
     for question, task in (("thresholds", "thresholds"), ("map", "growth rates")):
         asked = ask(*QUESTIONS[question], "--json")
         answer(asked)

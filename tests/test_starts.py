@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from cases import Form, every_form, every_free_form, every_load, filament, random_state
 from refusal import complaint
 from undula.arrays import Array, Nodes, State
-from undula.models import starts
-from undula.models.loads import Load, TipLoad
+from undula.models import initial_states as starts
+from undula.models.loads.analytic import Load, TipLoad
 
 BENT: list[Callable[..., State]] = [starts.kicked, starts.planar, starts.helix, starts.mode]
 FLAT: list[Callable[..., State]] = [starts.kicked, starts.planar, starts.mode]

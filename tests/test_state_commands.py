@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import undula as un
-from undula.analysis.convergence import extrapolated
-from undula.analysis.states import Flapping, Spinning
+from undula.analysis.states.extrapolation import extrapolated
+from undula.analysis.states.records import Flapping, Spinning
 from undula.app.cli import main
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
@@ -271,7 +271,7 @@ def test_the_straight_state_is_followed_through_its_onset(ask: Ask) -> None:
 def test_a_bifurcation_is_taken_to_many_links_on_request(
     ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.analysis.convergence.REFINEMENTS", (1, 2, 4))
+    monkeypatch.setattr("undula.analysis.states.extrapolation.REFINEMENTS", (1, 2, 4))
     words = [*FEW, "--along", "load.force=130:150", "--converge"]
     (torus,) = answer(ask("follow", "spinning", *words, "--json"))["bifurcations"]
     assert torus["links"] == [8, 16, 32]
@@ -282,7 +282,7 @@ def test_a_bifurcation_is_taken_to_many_links_on_request(
 
 
 def test_a_bifurcation_without_a_limit_says_so(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("undula.analysis.nearby._NEARBY", (0.01,))
+    monkeypatch.setattr("undula.analysis.solvers.refind._NEARBY", (0.01,))
     words = ["follow", "spinning", *FEW, "--along", "load.force=140:145", "--converge"]
     (torus,) = answer(ask(*words, "--json"))["bifurcations"]
     assert "no such change" in torus["not_converged"]
@@ -332,7 +332,7 @@ def test_a_threshold_along_a_parameter_is_a_list(ask: Ask) -> None:
 
 
 def test_no_threshold_is_an_answer_with_a_reason(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("undula.analysis.threshold_search.FARTHEST", 1.2)
+    monkeypatch.setattr("undula.analysis.solvers.threshold_search.FARTHEST", 1.2)
     found = answer(ask("threshold", "spinning-lost", *FEW, "--json"))
     for key in THRESHOLD - {"reason", "searched_to"}:
         assert found[key] is None, key
@@ -482,7 +482,7 @@ def test_what_cannot_be_drawn_is_refused_before_anything_is_computed(
 def test_progress_is_told_apart_from_the_answer(
     words: list[str], task: str, ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.app.meter.SECONDS_BETWEEN_LINES", 0.0)
+    monkeypatch.setattr("undula.terminal.meter.SECONDS_BETWEEN_LINES", 0.0)
     asked = ask(*words, "--json")
     answer(asked)
     told = asked[2].splitlines()

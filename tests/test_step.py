@@ -15,8 +15,8 @@ import pytest
 import xarray as xr
 
 from refusal import complaint
-from undula.analysis.last_period import SHAPES
-from undula.analysis.regime_changes import (
+from undula.analysis.ramps.ramp import Course, Step, settle_and_step
+from undula.analysis.ramps.regime_changes import (
     Hysteresis,
     RegimeChange,
     hysteresis,
@@ -24,19 +24,19 @@ from undula.analysis.regime_changes import (
     regime_changes,
     regimes,
 )
-from undula.analysis.schedule import Schedule
-from undula.analysis.settle_and_step import Course, Step, settle_and_step
-from undula.app import stepping
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.last_period import SHAPES
 from undula.app.cli import main
+from undula.app.commands import step as stepping
+from undula.inputs.ramp_input import read_step_input
+from undula.inputs.ranges import parse_steps
 from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads import TipLoad
-from undula.models.starts import kicked, planar, straight
-from undula.studies.ranges import parse_steps
-from undula.studies.step_input import read_step_input
-from undula.studies.steps_store import load_steps, stored_steps
+from undula.models.initial_states import kicked, planar, straight
+from undula.models.loads.analytic import TipLoad
+from undula.storage.ramp_file import load_steps, stored_steps
 from undula.views import step_diagram
-from undula.views.step_gallery import chosen_steps, seen_from_aside
+from undula.views.ramp.gallery import chosen_steps, seen_from_aside
 
 TWO = ["--set", "model.kind=chain", "--set", "model.links=2"]
 PAIR = Chain(2, TipLoad(4.0))

@@ -17,15 +17,15 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from refusal import complaint
-from undula.studies import store
-from undula.studies.store import load_checkpoint, load_result, write_run
+from undula.storage import run_file as store
+from undula.storage.run_file import load_checkpoint, load_result, write_run
 
 # A run that is killed after the temporary file is written and before it is moved into place.
 KILLED = """
 import os, signal, sys
 from pathlib import Path
 os.replace = lambda *names: os.kill(os.getpid(), signal.SIGKILL)
-from undula.studies.whole_file import write_whole
+from undula.storage.atomic import write_whole
 write_whole(Path(sys.argv[1]), b"half", overwrite=True)
 """
 # Another process, so that nothing but the content can make the bytes the same.
@@ -34,7 +34,7 @@ import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[2])
 from test_store import checkpoint, run
-from undula.studies.store import write_run
+from undula.storage.run_file import write_run
 write_run(Path(sys.argv[1]), run(), checkpoint())
 """
 

@@ -12,7 +12,7 @@ import pytest
 from typer.main import get_command
 
 from undula.app import cli
-from undula.app.streams import Guarded, printable
+from undula.terminal.streams import Guarded, printable
 
 UNDULA = Path(sysconfig.get_path("scripts")) / "undula"
 PACKAGE = Path(cli.__file__).parents[1]
@@ -54,7 +54,7 @@ def test_without_standard_output_the_answer_goes_to_standard_error(tmp_path, sai
 
 def test_files_are_not_opened_in_the_place_of_a_closed_stream(tmp_path) -> None:
     script = (
-        "import os; from undula.app.streams import guarded_streams\n"
+        "import os; from undula.terminal.streams import guarded_streams\n"
         "with guarded_streams(): print(open('new', 'w').fileno() > 2, file=open('told', 'w'))"
     )
     shell(f'{sys.executable} -c "{script}" <&- >&- 2>&-', tmp_path)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from refusal import complaint
 from small_studies import AXES, QUICK, study_of
-from undula.studies.blocks import Blocks, chunk_shape
-from undula.studies.differences import difference
-from undula.studies.spec import parse_input, read_input
-from undula.studies.study import of_dump
+from undula.inputs.input import parse_input, read_input
+from undula.storage.differences import difference
+from undula.sweeps.blocks import Blocks, chunk_shape
+from undula.sweeps.sweep import of_dump
 
 RANDOM = QUICK + '[study]\npolicy = "random"\ntries = 3\n' + AXES
 

@@ -23,16 +23,16 @@ from small_studies import (
     work_off,
     written_in_order,
 )
-from undula.analysis.observables import mean_position
-from undula.analysis.schedule import Ending
-from undula.analysis.simulation import Simulation
-from undula.app.sweep_text import study_answer
-from undula.app.sweep_work import SweepWork
-from undula.studies.blocks import MOST
-from undula.studies.build import build_model, build_start
-from undula.studies.point import point, points
-from undula.studies.spec import parse_input
-from undula.studies.study_store import load_study, open_study
+from undula.analysis.observables.shapes import mean_position
+from undula.analysis.run_settings import Ending
+from undula.analysis.runs.simulation import Simulation
+from undula.app.commands.sweep_text import study_answer
+from undula.inputs.build import build_model, build_start
+from undula.inputs.input import parse_input
+from undula.sweeps.blocks import MOST
+from undula.sweeps.point import point, points
+from undula.sweeps.store import load_study, open_study
+from undula.sweeps.work_queue import SweepWork
 
 RANDOM = QUICK + '[study]\npolicy = "random"\ntries = 2\n' + AXES
 NEIGHBOUR = QUICK + '[study]\npolicy = "neighbour"\n' + AXES
@@ -41,7 +41,7 @@ NEIGHBOUR = QUICK + '[study]\npolicy = "neighbour"\n' + AXES
 @pytest.fixture
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make blocks of a few points, so that a small study has several."""
-    monkeypatch.setattr("undula.studies.blocks.MOST", 4)
+    monkeypatch.setattr("undula.sweeps.blocks.MOST", 4)
 
 
 def test_xarray_opens_a_store_without_a_warning(tmp_path: Path) -> None:
@@ -121,7 +121,7 @@ def test_a_piece_that_takes_too_long_comes_back_in_part_and_loses_nothing(
     study = study_of(tmp_path, QUICK + AXES)
     at_once = done(study, tmp_path / "at-once.zarr")
     # Every point takes longer than a piece should.
-    monkeypatch.setattr("undula.studies.point.PIECE_SECONDS", 0.0)
+    monkeypatch.setattr("undula.sweeps.point.PIECE_SECONDS", 0.0)
     assert len(points(study.dump(), range(5))[1]) == 1
     assert differing(done(study, tmp_path / "in-part.zarr"), at_once) == []
 
@@ -154,7 +154,7 @@ def test_a_line_of_solved_states_in_which_a_point_fails_keeps_the_others(
     def fails(*_: Any) -> None:
         raise ArithmeticError("no branch")
 
-    monkeypatch.setattr("undula.studies.point.solved_line", fails)
+    monkeypatch.setattr("undula.sweeps.point.solved_line", fails)
     found = done(study_of(tmp_path, SOLVED + AXES), tmp_path / "s.zarr")
     assert (found["status"] == 1).all()
 
@@ -222,7 +222,7 @@ def test_a_block_that_was_cut_short_while_it_was_written_is_done_again(
 def test_a_full_disk_is_told_in_a_sentence_and_what_was_done_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.studies.blocks.MOST", 4)
+    monkeypatch.setattr("undula.sweeps.blocks.MOST", 4)
     study = study_of(tmp_path, QUICK + AXES)
     store = open_study(tmp_path / "s.zarr", study)
     work = SweepWork(store)
@@ -315,7 +315,7 @@ def test_the_store_of_another_study_or_version_is_refused(
         assert told in complaint(lambda other=other: open_study(path, other))
     same = study_of(tmp_path, RANDOM)
     with monkeypatch.context() as patched:
-        patched.setattr("undula.studies.study_store.software", lambda: "9.9")
+        patched.setattr("undula.sweeps.store.software", lambda: "9.9")
         told = complaint(lambda: open_study(path, same))
     assert f"made by undula {un_version()} and cannot be gone on with by undula 9.9" in told
     with open_study(path, same).alone():

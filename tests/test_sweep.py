@@ -18,13 +18,13 @@ import pytest
 import xarray as xr
 
 from small_studies import AXES, QUICK, differing
-from undula.app import own_workers
-from undula.app import pool as pool_module
 from undula.app.cli import main
-from undula.app.pool import DiedError, pool
-from undula.app.sweep_work import SweepWork
-from undula.studies.study import read_study
-from undula.studies.study_store import load_study, open_study
+from undula.sweeps import own_workers
+from undula.sweeps import workers as pool_module
+from undula.sweeps.store import load_study, open_study
+from undula.sweeps.sweep import read_study
+from undula.sweeps.work_queue import SweepWork
+from undula.sweeps.workers import DiedError, pool
 
 # Each starts processes of its own, which takes its time on a busy machine.
 pytestmark = pytest.mark.slow
@@ -148,7 +148,9 @@ def test_a_study_that_is_done_starts_no_workers(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("undula.app.sweeping.pool", lambda *_: pytest.fail("they were started"))
+    monkeypatch.setattr(
+        "undula.app.commands.sweep.pool", lambda *_: pytest.fail("they were started")
+    )
     store = swept[0].parent / "s.zarr"
     assert main(["sweep", str(swept[0]), "--out", str(store), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["verdicts"] == swept[1]["verdicts"]

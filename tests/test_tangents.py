@@ -20,10 +20,13 @@ from systems import (
     pinned,
 )
 from uncached import uncached
-from undula.analysis.schedule import Schedule
+from undula.analysis.run_settings import Schedule
 from undula.arrays import Array
 from undula.models.model import Model
-from undula.numerics.memory import (
+from undula.numerics.integration.schemes import NDF
+from undula.numerics.integration.status import Status
+from undula.numerics.integration.step import Options
+from undula.numerics.integration.stepper_state import (
     FAILED,
     PLANNED_FACTOR,
     PLANNED_ORDER,
@@ -32,11 +35,8 @@ from undula.numerics.memory import (
     Memory,
     start,
 )
-from undula.numerics.results import Status
-from undula.numerics.schemes import NDF
-from undula.numerics.stepping import Options
-from undula.numerics.system import derivative_half_bandwidth
-from undula.numerics.tangents import advance_with_changes
+from undula.numerics.integration.system import derivative_half_bandwidth
+from undula.numerics.integration.variational import advance_with_changes
 
 #: The loop for the systems of the tests.
 advance = uncached(advance_with_changes.py_func)

@@ -4,8 +4,8 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.births import born_downwards
-from undula.analysis.thresholds import threshold, threshold_curve
+from undula.analysis.solvers.criticality import born_downwards
+from undula.analysis.solvers.thresholds import threshold, threshold_curve
 from undula.app.cli import main
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
@@ -55,7 +55,7 @@ def test_a_search_that_ends_before_the_branch_begins_says_so() -> None:
 
 def test_a_farther_search_finds_what_a_nearer_one_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = threshold(EIGHT, "spinning-lost")
-    monkeypatch.setattr("undula.analysis.threshold_search.FARTHEST", 1.5)
+    monkeypatch.setattr("undula.analysis.solvers.threshold_search.FARTHEST", 1.5)
     none = threshold(EIGHT, "spinning-lost")
     assert none.value is None
     assert none.searched_to == pytest.approx(1.5 * 35.193, rel=1e-3)
@@ -116,7 +116,7 @@ def test_a_filament_of_other_symmetries_is_refused_before_any_search(
     kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        "undula.analysis.thresholds.threshold", lambda *_, **__: pytest.fail("searched")
+        "undula.analysis.solvers.thresholds.threshold", lambda *_, **__: pytest.fail("searched")
     )
     for parameter, values in (
         ("model.bending_ratio", [1.0, 1.25, 1.5]),

@@ -7,12 +7,12 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.convergence import extrapolated
-from undula.analysis.flapping import find_flapping
-from undula.analysis.nearby import found_again, limit_of
-from undula.analysis.spinning import find_spinning
-from undula.analysis.states import Flapping, NotFound, Spinning
-from undula.analysis.thresholds import THRESHOLDS, Threshold, threshold, threshold_curve
+from undula.analysis.solvers.flapping import find_flapping
+from undula.analysis.solvers.refind import found_again, limit_of
+from undula.analysis.solvers.spinning import find_spinning
+from undula.analysis.solvers.thresholds import THRESHOLDS, Threshold, threshold, threshold_curve
+from undula.analysis.states.extrapolation import extrapolated
+from undula.analysis.states.records import Flapping, NotFound, Spinning
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 CONFINED = EIGHT.with_(confined=True)
@@ -148,7 +148,7 @@ def test_a_curve_goes_on_beyond_a_value_without_a_threshold(
         ratio = model.drag_ratio
         return Threshold(kind, None if ratio == 2.0 else ratio, reason=f"{converged}")
 
-    monkeypatch.setattr("undula.analysis.thresholds.threshold", fake)
+    monkeypatch.setattr("undula.analysis.solvers.thresholds.threshold", fake)
     found = threshold_curve(EIGHT, "spinning-lost", "model.drag_ratio", [1.0, 2.0, 3.0, 4.0])
     assert [one.value for one in found] == [1.0, None, 3.0, 4.0]
     assert asked == [None, found[0], None, found[2]]
@@ -166,7 +166,7 @@ def test_flapping_that_is_held_in_its_plane_has_nothing_to_gain(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # Near enough that only the beginning of the branch is followed.
-    monkeypatch.setattr("undula.analysis.threshold_search.FARTHEST", 2.0)
+    monkeypatch.setattr("undula.analysis.solvers.threshold_search.FARTHEST", 2.0)
     found = threshold(CONFINED, "flapping-gained")
     assert found.value is None
     assert found.reason is not None
@@ -200,7 +200,7 @@ def test_a_curve_along_what_the_model_does_not_have_is_refused() -> None:
 
 
 def test_many_links_are_reached_from_few(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("undula.analysis.convergence.REFINEMENTS", (1, 2, 4))
+    monkeypatch.setattr("undula.analysis.states.extrapolation.REFINEMENTS", (1, 2, 4))
     few = EIGHT.with_(segments=6)
     limit = threshold(few, "spinning-lost", converged=True)
     single = [threshold(few.with_(segments=6 * part), "spinning-lost") for part in (1, 2, 4)]
@@ -247,7 +247,7 @@ def test_a_bifurcation_at_the_edge_of_a_range_is_found_again_within_it() -> None
 def test_a_limit_that_is_not_reached_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     known = of_eight("spinning-lost").at
     assert known is not None
-    monkeypatch.setattr("undula.analysis.nearby._NEARBY", (0.01,))
+    monkeypatch.setattr("undula.analysis.solvers.refind._NEARBY", (0.01,))
     limit = limit_of(known, "load.force")
     assert isinstance(limit, NotFound)
     assert "no such change between load.force" in limit.reason

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from undula.analysis.turning_sums import link_turns
+from undula.analysis.observables.link_sums import link_turns
 
 
 def test_turns_are_those_of_rotation_vectors() -> None:

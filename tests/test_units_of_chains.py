@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 
 import undula as un
 from refusal import complaint
-from undula.analysis.branch_records import Branch
-from undula.analysis.states import NotFound, Spinning
+from undula.analysis.states.branch import Branch
+from undula.analysis.states.records import NotFound, Spinning
 from undula.app.cli import main
-from undula.studies.store import load_result
+from undula.storage.run_file import load_result
 from undula.views import (
     bifurcation_diagram,
     growth_figure,

@@ -14,11 +14,11 @@ from matplotlib.figure import Figure
 
 from undula.errors import InputError
 from undula.views import movie, portrait
-from undula.views.movie import frame_times
-from undula.views.reading import read_scene
-from undula.views.resample import nodes_at
-from undula.views.traces import band
-from undula.views.video_file import write_video
+from undula.views.run.movie import frame_times
+from undula.views.run.reading import read_scene
+from undula.views.run.resample import nodes_at
+from undula.views.run.traces import band
+from undula.views.run.video_file import write_video
 
 NODES = 21
 ARC = np.linspace(0.0, 1.0, NODES)

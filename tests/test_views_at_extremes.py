@@ -11,15 +11,17 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import undula as un
-from undula.analysis import naming, regimes
-from undula.models.words import model_words
-from undula.studies.build import build_model
-from undula.studies.model_tables import ModelTable
-from undula.studies.spec import parse_input
-from undula.views import portrait, style
-from undula.views.steps import step_diagram
-from undula.views.traces import limits
-from undula.views.verdict_looks import _LOOKS, look_of
+from undula.analysis.regimes import classify as regimes
+from undula.analysis.regimes import names as naming
+from undula.inputs.build import build_model
+from undula.inputs.input import parse_input
+from undula.inputs.model_tables import ModelTable
+from undula.models.description import model_words
+from undula.views import portrait
+from undula.views.common import style
+from undula.views.common.verdict_styles import _LOOKS, look_of
+from undula.views.ramp.figure import step_diagram
+from undula.views.run.traces import limits
 
 NODES = 9
 ARC = np.linspace(0.0, 1.0, NODES)

@@ -14,14 +14,14 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from refusal import complaint
-from undula.analysis.branch_records import Bifurcation, Branch
-from undula.analysis.observables import Range
-from undula.analysis.states import Flapping, Spinning
+from undula.analysis.observables.shapes import Range
+from undula.analysis.states.branch import Bifurcation, Branch
+from undula.analysis.states.records import Flapping, Spinning
 from undula.models.filament import Filament
-from undula.models.loads import TipLoad
+from undula.models.loads.analytic import TipLoad
 from undula.views import bifurcation_diagram, threshold_curves
-from undula.views.branch_lines import branch_line
-from undula.views.labels_above import spread
+from undula.views.branches.branch_lines import branch_line
+from undula.views.common.labels import spread
 
 
 @dataclass(frozen=True)

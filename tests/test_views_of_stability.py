@@ -11,9 +11,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from refusal import complaint
-from undula.analysis.linear_results import CriticalCurve, Crossing, GrowthCurve, Onset, Spectrum
+from undula.analysis.linear.results import CriticalCurve, Crossing, GrowthCurve, Onset, Spectrum
 from undula.views import growth_figure, stability_portrait, threshold_figure
-from undula.views.mode_shapes import leading_shapes
+from undula.views.linear.mode_shapes import leading_shapes
 
 ARC = np.linspace(0.0, 1.0, 41)
 TRAVELLING = ARC**2 * np.exp(1j * (3.0 * ARC - 3.0))

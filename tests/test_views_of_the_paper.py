@@ -16,16 +16,16 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from refusal import complaint
-from undula.app import report_figures
-from undula.models.loads import LinearLoad, PowerLoad
+from undula.models.loads.analytic import LinearLoad, PowerLoad
 from undula.models.units import FILAMENT_UNITS, chain_units
-from undula.studies.claims import Answer
-from undula.studies.items import Figure as Shown
-from undula.studies.items import catalogue
-from undula.studies.store import write_run
-from undula.views.answered_branches import read_branch
-from undula.views.bistability import common_stretches
-from undula.views.reproduced import VIEWS
+from undula.reproduction.claims.catalogue import Figure as Shown
+from undula.reproduction.claims.catalogue import catalogue
+from undula.reproduction.claims.evaluate import Answer
+from undula.reproduction.figures.answered_branches import read_branch
+from undula.reproduction.figures.bistability import common_stretches
+from undula.reproduction.figures.by_name import VIEWS
+from undula.reproduction.report import figures as report_figures
+from undula.storage.run_file import write_run
 
 FILAMENT, CHAIN = FILAMENT_UNITS.names(), chain_units(2).names()
 LOST, GAINED = 180.0, 176.0

@@ -11,18 +11,18 @@ import pytest
 import undula as un
 from refusal import complaint
 from small_studies import study_of
-from undula.analysis import room
-from undula.analysis.integrate import Progress
-from undula.analysis.room import memory, needed_memory, refuse_too_large
-from undula.analysis.schedule import MOST_SAMPLES, Schedule
-from undula.analysis.settle_and_step import MOST_STEPS, Course
-from undula.app.pace import far_too_long
-from undula.studies import store_room
-from undula.studies.overrides import read_toml
-from undula.studies.ranges import parse_steps, parse_values
-from undula.studies.spec import parse_input
-from undula.studies.study_store import open_study
-from undula.studies.study_tables import MOST_POINTS
+from undula.analysis.ramps.ramp import MOST_STEPS, Course
+from undula.analysis.run_settings import MOST_SAMPLES, Schedule
+from undula.analysis.runs import memory_needed as room
+from undula.analysis.runs.integrate import Progress
+from undula.analysis.runs.memory_needed import memory, needed_memory, refuse_too_large
+from undula.inputs.input import parse_input
+from undula.inputs.overrides import read_toml
+from undula.inputs.ranges import parse_steps, parse_values
+from undula.inputs.sweep_table import MOST_POINTS
+from undula.sweeps import disk_space as store_room
+from undula.sweeps.store import open_study
+from undula.terminal.run_progress import far_too_long
 
 UNDULA = str(Path(sysconfig.get_path("scripts")) / "undula")
 TEN = un.Filament(10, un.TipLoad(75.0))

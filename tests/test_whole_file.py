@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from refusal import complaint
-from undula.app.outputs import claimed
-from undula.studies.whole_file import write_whole
+from undula.storage.atomic import write_whole
+from undula.storage.outputs import claimed
 
 
 def claim(path: Path, *, overwrite: bool = False) -> None:

@@ -12,17 +12,17 @@ import naive
 import undula as un
 from chains import OPTIONS, chain, random_state, tangents_of, virtual_work
 from refusal import complaint
-from undula.analysis.integrate import carry_on
-from undula.analysis.run import Run
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
-from undula.analysis.states import Flapping
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.integrate import carry_on
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.simulation import Simulation
+from undula.analysis.states.records import Flapping
 from undula.arrays import Array, Links, State
-from undula.models.rod_velocity import rate_of_change
-from undula.numerics.banded import to_dense
-from undula.numerics.system import RATES
-from undula.studies.build import build_model
-from undula.studies.spec import parse_input
+from undula.inputs.build import build_model
+from undula.inputs.input import parse_input
+from undula.models.rod.velocity import rate_of_change
+from undula.numerics.integration.system import RATES
+from undula.numerics.linalg.banded import to_dense
 
 every_option = pytest.mark.parametrize("option", OPTIONS)
 every_number = pytest.mark.parametrize("links", [1, 2, 3, 5, 12])

@@ -20,17 +20,17 @@ import xarray as xr
 from distributed import Security, get_worker, rpc
 
 from small_studies import AXES, QUICK, differing, done, study_of
-from undula.app import own_workers
-from undula.app import pool as pool_module
 from undula.app.cli import main
-from undula.app.own_workers import TAKES, workers_that_fit
-from undula.app.pool import LostError, Pool, pool
-from undula.app.sweep_work import SweepWork
 from undula.errors import InputError
-from undula.studies.point import line, points
-from undula.studies.store import load_checkpoint, load_result
-from undula.studies.study import Study
-from undula.studies.study_store import load_study, open_study
+from undula.storage.run_file import load_checkpoint, load_result
+from undula.sweeps import own_workers
+from undula.sweeps import workers as pool_module
+from undula.sweeps.own_workers import TAKES, workers_that_fit
+from undula.sweeps.point import line, points
+from undula.sweeps.store import load_study, open_study
+from undula.sweeps.sweep import Study
+from undula.sweeps.work_queue import SweepWork
+from undula.sweeps.workers import LostError, Pool, pool
 
 # Dask and tornado leave sockets to the garbage collection, which pytest tells of.
 pytestmark = pytest.mark.filterwarnings("ignore")

@@ -2,6 +2,6 @@
 
 import numba
 
-from undula.compiled import FASTMATH
+from undula.jit.compilation import FASTMATH
 
 uncached = numba.njit(fastmath=FASTMATH, error_model="numpy")

@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 
 import undula as un
-from undula.analysis.schedule import Schedule
-from undula.analysis.simulation import Simulation
+from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.simulation import Simulation
 from undula.arrays import Array
-from undula.numerics.integrate import advance
-from undula.numerics.system import RATES
+from undula.numerics.integration.system import RATES
+from undula.numerics.integration.time_loop import advance
 
 _NEVER = np.iinfo(np.int64).max
 Ours = Callable[[un.Filament, Array, Array, float], tuple[Array, Array]]

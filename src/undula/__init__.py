@@ -9,100 +9,100 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    import undula.analysis.observables as observables
+    import undula.analysis.observables.shapes as observables
     import undula.views as views
-    from undula.analysis.basins import basins
-    from undula.analysis.births import births
-    from undula.analysis.borders import solved_borders
-    from undula.analysis.disagreements import disagreements
-    from undula.analysis.equilibrium import Equilibrium, find_equilibrium
-    from undula.analysis.flapping import find_flapping
-    from undula.analysis.integrate import integrate
-    from undula.analysis.kinds import converged, follow, follow_from_onset
-    from undula.analysis.lyapunov import lyapunov
-    from undula.analysis.periodic_orbits import follow_born
-    from undula.analysis.periodic_search import find_periodic
-    from undula.analysis.periodic_state import Periodic
-    from undula.analysis.record import dataset_of
-    from undula.analysis.run import Run
-    from undula.analysis.solved_points import solved_line
-    from undula.analysis.spinning import find_spinning
-    from undula.analysis.stability import (
+    from undula.analysis.linear.stability import (
         critical_curve,
         critical_force,
         growth_curve,
         spectrum,
     )
-    from undula.analysis.states import Flapping, Spinning
-    from undula.analysis.thresholds import threshold, threshold_curve
+    from undula.analysis.maps.basins import basins
+    from undula.analysis.maps.contradictions import disagreements
+    from undula.analysis.maps.stability_along_force import solved_line
+    from undula.analysis.maps.stability_boundaries import solved_borders
+    from undula.analysis.regimes.lyapunov import lyapunov
+    from undula.analysis.runs.dataset import dataset_of
+    from undula.analysis.runs.integrate import integrate
+    from undula.analysis.runs.run import Run
+    from undula.analysis.solvers.criticality import births
+    from undula.analysis.solvers.equilibrium import Equilibrium, find_equilibrium
+    from undula.analysis.solvers.flapping import find_flapping
+    from undula.analysis.solvers.periodic_orbits import follow_born
+    from undula.analysis.solvers.periodic_search import find_periodic
+    from undula.analysis.solvers.spinning import find_spinning
+    from undula.analysis.solvers.state_kinds import converged, follow, follow_from_onset
+    from undula.analysis.solvers.thresholds import threshold, threshold_curve
+    from undula.analysis.states.periodic_record import Periodic
+    from undula.analysis.states.records import Flapping, Spinning
     from undula.errors import InputError
-    from undula.models.beads import BeadLoad
     from undula.models.chain import Chain
     from undula.models.filament import Filament
-    from undula.models.loads import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+    from undula.models.initial_states import from_state, helix, kicked, mode, planar, straight
+    from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+    from undula.models.loads.beads import BeadLoad
+    from undula.models.loads.user_density import ProfileLoad, TableLoad
     from undula.models.natural_curvature import CurvatureTable
-    from undula.models.profiles import ProfileLoad, TableLoad
     from undula.models.scales import Scales
-    from undula.models.starts import from_state, helix, kicked, mode, planar, straight
-    from undula.studies.steps_store import load_steps
-    from undula.studies.store import load_result
-    from undula.studies.study_store import load_study
-    from undula.studies.unchecked import StoredWarning
+    from undula.storage.ramp_file import load_steps
+    from undula.storage.run_file import load_result
+    from undula.storage.unchecked import StoredWarning
+    from undula.sweeps.store import load_study
 
 _HOMES = {
-    "BeadLoad": "undula.models.beads",
+    "BeadLoad": "undula.models.loads.beads",
     "Chain": "undula.models.chain",
     "CurvatureTable": "undula.models.natural_curvature",
-    "Equilibrium": "undula.analysis.equilibrium",
+    "Equilibrium": "undula.analysis.solvers.equilibrium",
     "Filament": "undula.models.filament",
-    "Flapping": "undula.analysis.states",
+    "Flapping": "undula.analysis.states.records",
     "InputError": "undula.errors",
-    "LinearLoad": "undula.models.loads",
-    "Load": "undula.models.loads",
-    "Periodic": "undula.analysis.periodic_state",
-    "PointLoad": "undula.models.loads",
-    "PowerLoad": "undula.models.loads",
-    "ProfileLoad": "undula.models.profiles",
-    "Run": "undula.analysis.run",
+    "LinearLoad": "undula.models.loads.analytic",
+    "Load": "undula.models.loads.analytic",
+    "Periodic": "undula.analysis.states.periodic_record",
+    "PointLoad": "undula.models.loads.analytic",
+    "PowerLoad": "undula.models.loads.analytic",
+    "ProfileLoad": "undula.models.loads.user_density",
+    "Run": "undula.analysis.runs.run",
     "Scales": "undula.models.scales",
-    "Spinning": "undula.analysis.states",
-    "StoredWarning": "undula.studies.unchecked",
-    "TableLoad": "undula.models.profiles",
-    "TipLoad": "undula.models.loads",
-    "basins": "undula.analysis.basins",
-    "births": "undula.analysis.births",
-    "converged": "undula.analysis.kinds",
-    "critical_curve": "undula.analysis.stability",
-    "critical_force": "undula.analysis.stability",
-    "dataset_of": "undula.analysis.record",
-    "disagreements": "undula.analysis.disagreements",
-    "find_equilibrium": "undula.analysis.equilibrium",
-    "find_flapping": "undula.analysis.flapping",
-    "find_periodic": "undula.analysis.periodic_search",
-    "find_spinning": "undula.analysis.spinning",
-    "follow": "undula.analysis.kinds",
-    "follow_born": "undula.analysis.periodic_orbits",
-    "follow_from_onset": "undula.analysis.kinds",
-    "from_state": "undula.models.starts",
-    "growth_curve": "undula.analysis.stability",
-    "helix": "undula.models.starts",
-    "integrate": "undula.analysis.integrate",
-    "kicked": "undula.models.starts",
-    "load_result": "undula.studies.store",
-    "load_steps": "undula.studies.steps_store",
-    "load_study": "undula.studies.study_store",
-    "lyapunov": "undula.analysis.lyapunov",
-    "mode": "undula.models.starts",
-    "planar": "undula.models.starts",
-    "solved_borders": "undula.analysis.borders",
-    "solved_line": "undula.analysis.solved_points",
-    "spectrum": "undula.analysis.stability",
-    "straight": "undula.models.starts",
-    "threshold": "undula.analysis.thresholds",
-    "threshold_curve": "undula.analysis.thresholds",
+    "Spinning": "undula.analysis.states.records",
+    "StoredWarning": "undula.storage.unchecked",
+    "TableLoad": "undula.models.loads.user_density",
+    "TipLoad": "undula.models.loads.analytic",
+    "basins": "undula.analysis.maps.basins",
+    "births": "undula.analysis.solvers.criticality",
+    "converged": "undula.analysis.solvers.state_kinds",
+    "critical_curve": "undula.analysis.linear.stability",
+    "critical_force": "undula.analysis.linear.stability",
+    "dataset_of": "undula.analysis.runs.dataset",
+    "disagreements": "undula.analysis.maps.contradictions",
+    "find_equilibrium": "undula.analysis.solvers.equilibrium",
+    "find_flapping": "undula.analysis.solvers.flapping",
+    "find_periodic": "undula.analysis.solvers.periodic_search",
+    "find_spinning": "undula.analysis.solvers.spinning",
+    "follow": "undula.analysis.solvers.state_kinds",
+    "follow_born": "undula.analysis.solvers.periodic_orbits",
+    "follow_from_onset": "undula.analysis.solvers.state_kinds",
+    "from_state": "undula.models.initial_states",
+    "growth_curve": "undula.analysis.linear.stability",
+    "helix": "undula.models.initial_states",
+    "integrate": "undula.analysis.runs.integrate",
+    "kicked": "undula.models.initial_states",
+    "load_result": "undula.storage.run_file",
+    "load_steps": "undula.storage.ramp_file",
+    "load_study": "undula.sweeps.store",
+    "lyapunov": "undula.analysis.regimes.lyapunov",
+    "mode": "undula.models.initial_states",
+    "planar": "undula.models.initial_states",
+    "solved_borders": "undula.analysis.maps.stability_boundaries",
+    "solved_line": "undula.analysis.maps.stability_along_force",
+    "spectrum": "undula.analysis.linear.stability",
+    "straight": "undula.models.initial_states",
+    "threshold": "undula.analysis.solvers.thresholds",
+    "threshold_curve": "undula.analysis.solvers.thresholds",
 }
 
-_ROOMS = {"observables": "undula.analysis.observables", "views": "undula.views"}
+_ROOMS = {"observables": "undula.analysis.observables.shapes", "views": "undula.views"}
 
 __all__ = [
     "BeadLoad",

@@ -1,1 +1,1 @@
-"""Questions about a trajectory or a model, answered with numerics on arrays."""
+"""Questions about a model or a trajectory, answered with numerics."""

@@ -1,1 +1,1 @@
-"""The face: the commands, their progress, their answers and their exit status."""
+"""The command line."""

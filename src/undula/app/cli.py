@@ -8,8 +8,6 @@ from typing import Annotated
 
 import typer
 
-from undula.analysis.interrupts import endings_heard
-from undula.app.answers import INTERRUPTED, interrupted, refuse
 from undula.app.help import Commands
 from undula.app.options import (
     Budget,
@@ -27,6 +25,8 @@ from undula.app.questions import find, follow, stability, threshold
 from undula.app.reproduction import reproduce
 from undula.app.studying import status, sweep
 from undula.app.viewing import movie, plot
+from undula.interrupts import endings_heard
+from undula.terminal.output import INTERRUPTED, interrupted, refuse
 
 # Matrices here are small: a second thread of the linear algebra makes them slower, not faster.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -56,8 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit status: 0 done, 2 bad input, 3 stopped early with results kept or an answer that
         standard output did not take, 130 interrupted before there was a result.
     """
-    from undula.app.answers import STOPPED_EARLY, notice
-    from undula.app.streams import guarded_streams
+    from undula.terminal.output import STOPPED_EARLY, notice
+    from undula.terminal.streams import guarded_streams
 
     given = list(sys.argv[1:] if arguments is None else arguments)
     with guarded_streams() as answers:
@@ -74,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _carry_out(given: Sequence[str]) -> int:
     """Run a command; tell a mistake in one sentence, and return the exit status."""
-    from undula.app.warnings_told import warnings_told
+    from undula.terminal.warnings import warnings_told
 
     try:
         with warnings_told(), endings_heard():
@@ -128,10 +128,10 @@ def run(
 
     Writes run.nc, run.png and run.mp4 into DIR, by default results/ and the name of FILE.
     """
-    from undula.app.finishing import finish, views_of
-    from undula.app.jobs import begin, reads_of
-    from undula.app.outputs import claimed
-    from undula.studies.spec import read_input
+    from undula.app.commands.run_end import finish, views_of
+    from undula.app.commands.run_job import begin, reads_of
+    from undula.inputs.input import read_input
+    from undula.storage.outputs import claimed
 
     wanted, seconds = read_input(file, changes or ()), seconds_of(budget)
     result = (out or Path("results") / (file.stem if file else "run")) / "run.nc"
@@ -161,10 +161,10 @@ def resume(
     as_json: Json = False,
 ) -> int:
     """Go on where a run ended, in the same file; figure and movie are drawn anew."""
-    from undula.app.finishing import finish, views_of
-    from undula.app.jobs import take_up
-    from undula.app.outputs import claimed
-    from undula.studies.store import load_result
+    from undula.app.commands.run_end import finish, views_of
+    from undula.app.commands.run_job import take_up
+    from undula.storage.outputs import claimed
+    from undula.storage.run_file import load_result
 
     seconds = seconds_of(budget)
     load_result(result)  # what is none is told before anything is made or locked
@@ -202,9 +202,9 @@ def step(
     Writes steps.nc and steps.png into DIR, by default results/ and the name of FILE. A series that
     was stopped early goes on with the same command.
     """
-    from undula.app.jobs import reads_of
-    from undula.app.stepping import Job, plan, step_along
-    from undula.studies.step_input import read_step_input
+    from undula.app.commands.run_job import reads_of
+    from undula.app.commands.step import Job, plan, step_along
+    from undula.inputs.ramp_input import read_step_input
 
     seconds = seconds_of(budget)
     wanted = read_step_input(file, changes or ())
@@ -232,8 +232,8 @@ def units(
     as_json: Json = False,
 ) -> int:
     """Convert dimensionless numbers of a filament to physical ones, and back."""
-    from undula.app.answers import DONE, reply
-    from undula.app.units import convert, given, scales_of, units_answer, units_text
+    from undula.app.commands.units import convert, given, scales_of, units_answer, units_text
+    from undula.terminal.output import DONE, reply
 
     scales = scales_of(length, stiffness, viscosity, slenderness)
     converted = convert(

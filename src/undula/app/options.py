@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from undula.errors import InputError
-from undula.studies.file_names import any_name, file_name
+from undula.inputs.file_names import any_name, file_name
 
 
 def a_file(text: str) -> Path:

@@ -12,8 +12,8 @@ from undula.app.options import Changes, Converge, Input, Json, Overwrite, Plot, 
 from undula.errors import InputError
 
 if TYPE_CHECKING:
-    from undula.app.answers import Told
-    from undula.app.outputs import Claim
+    from undula.storage.outputs import Claim
+    from undula.terminal.output import Told
 
 
 def stability(
@@ -40,9 +40,9 @@ def stability(
     With --forces the leading eigenvalue at each force, with --along thresholds along a parameter,
     with both a map.
     """
-    from undula.app.stability import Question, ask
-    from undula.studies.ranges import parse_axis, parse_values
-    from undula.studies.spec import read_stability_input
+    from undula.app.commands.stability import Question, ask
+    from undula.inputs.input import read_stability_input
+    from undula.inputs.ranges import parse_axis, parse_values
 
     given = [*(changes or ()), *([f"stability.method={method}"] if method is not None else [])]
     question = Question(
@@ -54,7 +54,7 @@ def stability(
         told, draw = ask(question)
 
         def save(path: Path) -> None:
-            from undula.app.drawing import save_figure
+            from undula.app.commands.drawing import save_figure
 
             save_figure(draw(), path, claim)
 
@@ -88,10 +88,10 @@ def find(
     A periodic motion is that which a run comes to: the one of --run, whose model it is of, or else
     one from a small kick.
     """
-    from undula.app import finding
-    from undula.app.answers import DONE, notice, reply
-    from undula.app.beginnings import beginning_of
-    from undula.app.compiling import compilation_announced
+    from undula.app.commands import find as finding
+    from undula.app.commands.find_start import beginning_of
+    from undula.terminal.compile_notice import compilation_announced
+    from undula.terminal.output import DONE, notice, reply
 
     asked = beginning_of(kind, file, changes or (), run, seed)
     with compilation_announced(notice):
@@ -127,13 +127,13 @@ def follow(
     as_json: Json = False,
 ) -> int:
     """Follow a state along a parameter, with its stability and its bifurcations."""
-    from undula.analysis.straight_branch import StraightBranch
-    from undula.app.answers import notice
-    from undula.app.compiling import compilation_announced
-    from undula.app.following import Way, follow_along
-    from undula.studies.build import build_model
-    from undula.studies.ranges import parse_way
-    from undula.studies.spec import read_model_input
+    from undula.analysis.linear.straight_branch import StraightBranch
+    from undula.app.commands.follow import Way, follow_along
+    from undula.inputs.build import build_model
+    from undula.inputs.input import read_model_input
+    from undula.inputs.ranges import parse_way
+    from undula.terminal.compile_notice import compilation_announced
+    from undula.terminal.output import notice
 
     wanted = read_model_input(file, changes or ())
     way = Way(*parse_way("--along", along))
@@ -144,7 +144,7 @@ def follow(
             told, branch = follow_along(model, kind, way, converge=converge, title=title)
 
         def save(path: Path) -> None:
-            from undula.app.drawing import draw_branch, draw_straight
+            from undula.app.commands.drawing import draw_branch, draw_straight
 
             if isinstance(branch, StraightBranch):
                 draw_straight(branch, path, claim, title=title, units=model.units.names())
@@ -182,12 +182,12 @@ def threshold(
 ) -> int:
     """Find the force at which a state gains or loses stability, also along a parameter."""
     from undula.analysis.parameters import FORCE
-    from undula.app.answers import notice
-    from undula.app.compiling import compilation_announced
-    from undula.app.thresholding import tell_threshold, tell_thresholds
-    from undula.studies.build import build_model
-    from undula.studies.ranges import parse_axis
-    from undula.studies.spec import read_model_input
+    from undula.app.commands.threshold import tell_threshold, tell_thresholds
+    from undula.inputs.build import build_model
+    from undula.inputs.input import read_model_input
+    from undula.inputs.ranges import parse_axis
+    from undula.terminal.compile_notice import compilation_announced
+    from undula.terminal.output import notice
 
     wanted = read_model_input(file, changes or ())
     model, end = build_model(wanted), _end_of_search(up_to)
@@ -207,7 +207,7 @@ def threshold(
             )
 
         def save(path: Path) -> None:
-            from undula.app.drawing import draw_thresholds
+            from undula.app.commands.drawing import draw_thresholds
 
             done = axis[0], axis[1][: len(found)]
             units = model.units.names()
@@ -227,7 +227,7 @@ def _reply(
 
     What was computed is told even where the figure cannot be drawn.
     """
-    from undula.app.answers import STOPPED_EARLY, notice, reply
+    from undula.terminal.output import STOPPED_EARLY, notice, reply
 
     status = _ended(told)
     try:
@@ -243,7 +243,7 @@ def _reply(
 
 def _ended(told: "Told") -> int:
     """Return the exit status, having said so if Ctrl-C ended the search before its end."""
-    from undula.app.answers import DONE, STOPPED_EARLY, notice
+    from undula.terminal.output import DONE, STOPPED_EARLY, notice
 
     if told.answer["status"] != "interrupted":
         return DONE
@@ -271,12 +271,12 @@ def _runs_to_draw(kind: str, parameter: str, plot: Path | None, runs: Sequence[P
     if runs and (plot is None or kind == "straight"):
         raise InputError("--run draws a dot beside spinning or flapping; give --plot for these")
     if plot is not None and kind == "straight":
-        from undula.app.drawing import check_straight
+        from undula.app.commands.drawing import check_straight
 
         check_straight(parameter)
     if not runs:
         return []
-    from undula.studies.store import load_result
+    from undula.storage.run_file import load_result
 
     return [load_result(run) for run in runs]
 
@@ -286,11 +286,11 @@ def _figure_claimed(
     path: Path | None, *, overwrite: bool, reads: Sequence[Path | None]
 ) -> Iterator["Claim"]:
     """Claim the name of a figure, if there is one, before anything is computed."""
-    from undula.app.outputs import claimed
+    from undula.storage.outputs import claimed
 
     names = [] if path is None else [path]
     if path is not None:
-        from undula.app.drawing import check_figure_name
+        from undula.app.commands.drawing import check_figure_name
 
         check_figure_name("--plot", path)
     given = [file for file in reads if file is not None]

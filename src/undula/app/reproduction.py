@@ -52,9 +52,9 @@ def reproduce(
     Writes index.html and claims.json into DIR, and the data of every command below DIR/data. What
     was computed before, by the same sources, is not computed again.
     """
-    from undula.app.reproducing import Asked, list_items
-    from undula.app.reproducing import reproduce as carry_out
-    from undula.studies.items import CATALOGUE
+    from undula.reproduction.claims.catalogue import CATALOGUE
+    from undula.reproduction.reproduce import Asked, list_items
+    from undula.reproduction.reproduce import reproduce as carry_out
 
     folder = catalogue or CATALOGUE
     if listed:

@@ -6,5 +6,5 @@ def main() -> int:
     try:
         from undula.app.cli import main as carry_out
     except KeyboardInterrupt:
-        return 130  # as `undula.app.answers.INTERRUPTED`, which is not there yet
+        return 130  # as `undula.terminal.output.INTERRUPTED`, which is not there yet
     return carry_out()

@@ -41,8 +41,8 @@ def sweep(
     The store is a Zarr group, by default results/ and the name of the file. A study that was
     stopped goes on with the same command.
     """
-    from undula.app.sweeping import Asked
-    from undula.app.sweeping import sweep as carry_out
+    from undula.app.commands.sweep import Asked
+    from undula.app.commands.sweep import sweep as carry_out
 
     asked = Asked(workers, scheduler, retry_failed, seconds_of(budget))
     return carry_out(file, changes or (), out, asked, as_json=as_json)
@@ -55,6 +55,6 @@ def status(
     as_json: Json = False,
 ) -> int:
     """Tell how far a study is, also while it goes on: points done, verdicts, failures."""
-    from undula.app.sweeping import status as tell
+    from undula.app.commands.sweep import status as tell
 
     return tell(store, as_json=as_json)

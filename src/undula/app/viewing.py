@@ -40,13 +40,13 @@ def plot(
 ) -> int:
     """Draw a stored run or a study of many runs, by default beside it as .png."""
     if result.is_dir():
-        from undula.app.diagrams import Asked, plot_study
+        from undula.app.commands.plot_sweep import Asked, plot_study
 
         return plot_study(result, Asked(view, out, at or (), borders, overwrite), as_json=as_json)
-    from undula.app.answers import DONE, reply
-    from undula.app.drawing import draw_figure, figure_path
-    from undula.app.outputs import claimed
-    from undula.studies.store import load_result
+    from undula.app.commands.drawing import draw_figure, figure_path
+    from undula.storage.outputs import claimed
+    from undula.storage.run_file import load_result
+    from undula.terminal.output import DONE, reply
 
     for option, given in (("--view", view != "diagram"), ("--at", at), ("--borders", borders)):
         if given:
@@ -69,10 +69,10 @@ def movie(
     as_json: Json = False,
 ) -> int:
     """Make the movie of a stored run, by default beside it as .mp4."""
-    from undula.app.answers import DONE, reply
-    from undula.app.drawing import draw_movie, movie_path
-    from undula.app.outputs import claimed
-    from undula.studies.store import load_result
+    from undula.app.commands.drawing import draw_movie, movie_path
+    from undula.storage.outputs import claimed
+    from undula.storage.run_file import load_result
+    from undula.terminal.output import DONE, reply
 
     path = movie_path(result, out)
     stored, renewed = load_result(result), [path] if out is None else []

@@ -1,1 +1,1 @@
-"""The physics: each model with its right-hand side, Jacobian, energy and symmetry."""
+"""The physics: filaments, chains of beads, their loads and their initial states."""

@@ -19,8 +19,8 @@ import numpy as np
 from undula.arrays import Array, Links
 from undula.errors import InputError, is_number
 from undula.models.linked_rod import LinkedRod
-from undula.models.loads import Load
-from undula.models.rod import FoldingPlanarRod, FoldingSpatialRod, PlainRod, Rod, WindingRod
+from undula.models.loads.analytic import Load
+from undula.models.rod.tables import FoldingPlanarRod, FoldingSpatialRod, PlainRod, Rod, WindingRod
 from undula.models.units import Units, chain_units
 
 MOST_LINKS = 1000

@@ -12,14 +12,14 @@ from undula.arrays import Array, Links, State
 from undula.errors import InputError, is_number
 from undula.models.directors import directors_of, unbent_links
 from undula.models.linked_rod import LinkedRod
-from undula.models.loads import DensityLoad
+from undula.models.loads.analytic import DensityLoad
 from undula.models.natural_curvature import (
     NaturalCurvature,
     accepted,
     of_pieces,
     refuse_beyond_pi,
 )
-from undula.models.rod import (
+from undula.models.rod.tables import (
     ExtensiblePlanarRod,
     ExtensibleSpatialRod,
     FramedRod,
@@ -52,7 +52,7 @@ class Filament(LinkedRod):
     segments : int
         Links that the filament is made of, from 4 to 2000. Errors fall as 1/segments^2.
     load : DensityLoad
-        The axial follower force, see `undula.models.loads`.
+        The axial follower force, see `undula.models.loads.analytic`.
     drag_ratio : float
         Normal over tangential drag coefficient, gamma, at least 1.
     inextensibility : {"exact", "weak"}

@@ -9,14 +9,14 @@ import numpy as np
 
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError
-from undula.models.link_lengths import admissible, straight
-from undula.models.loads import DensityLoad
+from undula.models.loads.analytic import DensityLoad
 from undula.models.model import Energetics
-from undula.models.rod import FramedRod, WindingRod
-from undula.models.rod_flow import RodFlow
-from undula.models.rod_velocity import observe, rate_of_change
-from undula.numerics.banded import to_dense
-from undula.numerics.system import RATES
+from undula.models.rod.dae import RodFlow
+from undula.models.rod.link_lengths import admissible, straight
+from undula.models.rod.tables import FramedRod, WindingRod
+from undula.models.rod.velocity import observe, rate_of_change
+from undula.numerics.integration.system import RATES
+from undula.numerics.linalg.banded import to_dense
 
 
 class LinkedRod(ABC):
@@ -31,7 +31,7 @@ class LinkedRod(ABC):
     @cached_property
     @abstractmethod
     def system(self) -> Any:
-        """The tables: one of `undula.models.rod.RODS`."""
+        """The tables: one of `undula.models.rod.tables.RODS`."""
 
     @property
     def dimension(self) -> int:
@@ -74,7 +74,7 @@ class LinkedRod(ABC):
 
     @cached_property
     def equations(self) -> RodFlow:
-        """The equations as solvers of states want them, see `undula.numerics.problem`."""
+        """Equations for solvers of states: see `undula.numerics.continuation.problem`."""
         return RodFlow(self.system)
 
     def positions(self, unknowns: Array) -> State:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Protocol, Self
 
 from undula.arrays import Array, Nodes, State
-from undula.models.loads import DensityLoad, Load
+from undula.models.loads.analytic import DensityLoad, Load
 from undula.models.units import Units
 
 
@@ -66,14 +66,14 @@ class Model(Protocol):
 
     @property
     def equations(self) -> Any:
-        """The equations as solvers of states want them: `undula.numerics.problem.Equations`.
+        """Equations for solvers of states: `undula.numerics.continuation.problem.Equations`.
 
         They tell as well, as `turning(y)`, the velocity of a unit rate of turning and its drag.
         """
 
     @property
     def system(self) -> Any:
-        """The equations as the integrator wants them, see `undula.numerics.system`."""
+        """The equations as the integrator wants them, see `undula.numerics.integration.system`."""
 
     def unknowns(self, x: State) -> Array:
         """Return the integrator's vector: positions and the multipliers that belong to them."""

@@ -1,1 +1,1 @@
-"""Mathematics on arrays: stiff integration and banded algebra, with no notion of a filament."""
+"""Mathematics on arrays, with no notion of a filament."""

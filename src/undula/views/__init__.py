@@ -1,19 +1,19 @@
 """Figures and movies of results: pure functions, and the only users of plotting libraries."""
 
-from undula.views.basin_diagram import basin_diagram
-from undula.views.bifurcation import bifurcation_diagram
-from undula.views.growth import growth_figure
-from undula.views.mean_paths import mean_paths
-from undula.views.movie import movie
-from undula.views.phase_diagram import phase_diagram
-from undula.views.phase_gallery import gallery
-from undula.views.phase_page import phase_page
-from undula.views.portrait import portrait
-from undula.views.stability import stability_portrait
-from undula.views.steps import step_diagram
-from undula.views.threshold_curves import threshold_curves
-from undula.views.thresholds import threshold_figure
-from undula.views.winding import Winding, winding_figure
+from undula.views.branches.bifurcation import bifurcation_diagram
+from undula.views.linear.growth import growth_figure
+from undula.views.linear.stability import stability_portrait
+from undula.views.linear.threshold_curves import threshold_curves
+from undula.views.linear.thresholds import threshold_figure
+from undula.views.ramp.figure import step_diagram
+from undula.views.run.movie import movie
+from undula.views.run.portrait import portrait
+from undula.views.run.winding import Winding, winding_figure
+from undula.views.sweep.basins import basin_diagram
+from undula.views.sweep.diagram import phase_diagram
+from undula.views.sweep.gallery import gallery
+from undula.views.sweep.mean_paths import mean_paths
+from undula.views.sweep.page import phase_page
 
 __all__ = [
     "Winding",

@@ -1,0 +1,1 @@
+"""Stability of states over a parameter and the force."""

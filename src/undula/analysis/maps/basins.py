@@ -1,0 +1,101 @@
+"""Shares of starts that end in each verdict, at each point of a sweep with several tries."""
+
+from statistics import NormalDist
+
+import numpy as np
+import xarray as xr
+
+from undula.arrays import Array
+from undula.errors import InputError
+from undula.schema.sweep_axes import DONE, TRY, verdicts_of
+
+#: Dimension of the verdicts.
+VERDICT = "verdict"
+
+
+def wilson_interval(hits: Array, tries: Array, confidence: float = 0.95) -> tuple[Array, Array]:
+    """Return the interval in which the share that so many hits are an estimate of lies.
+
+    Wilson's score interval: the shares p from which the observed one is not farther than z of their
+    own standard deviations sqrt(p (1 - p) / n). It stays within 0 and 1, and is not empty where all
+    or none hit.
+
+    Parameters
+    ----------
+    hits, tries : ndarray of one shape
+        Numbers of hits among independent tries.
+    confidence : float
+        Between 0 and 1.
+
+    Returns
+    -------
+    tuple of ndarray
+        Lower and upper ends; 0 and 1 where nothing was tried.
+
+    Raises
+    ------
+    InputError
+        The confidence is out of range.
+
+    References
+    ----------
+    E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
+    """
+    if not 0.0 < confidence < 1.0:
+        raise InputError(f"confidence = {confidence} has to be above 0 and below 1; 0.95 is usual")
+    z = NormalDist().inv_cdf(0.5 + 0.5 * confidence)
+    hits, tries = np.asarray(hits, dtype=float), np.asarray(tries, dtype=float)
+    n = np.maximum(tries, 1.0)
+    share = hits / n
+    middle = (share + 0.5 * z**2 / n) / (1.0 + z**2 / n)
+    half = z / (1.0 + z**2 / n) * np.sqrt(share * (1.0 - share) / n + 0.25 * z**2 / n**2)
+    # Round-off alone keeps the ends from 0 and 1 where all or none hit.
+    low = np.where(hits == 0.0, 0.0, middle - half)
+    high = np.where(hits == tries, 1.0, middle + half)
+    return low, high
+
+
+def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
+    """Return the share of starts that end in each verdict.
+
+    Parameters
+    ----------
+    store : xarray.Dataset
+        A stored sweep.
+    confidence : float
+        Of the intervals, between 0 and 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the axes `tries`, the number of starts with an answer; over the axes and `verdict`,
+        those that occur, the most frequent first, `hits`, `fraction`, `low` and `high`: the share
+        and the ends of its Wilson interval. Shares are NaN where there are no tries.
+
+    Raises
+    ------
+    InputError
+        It is no stored sweep, or the confidence is out of range.
+    """
+    words = verdicts_of(store)
+    names, counts = np.unique(words.values[words.values != ""], return_counts=True)
+    ordered = names[np.argsort(-counts, kind="stable")]
+    labels = xr.DataArray(ordered, dims=VERDICT, coords={VERDICT: ordered})
+    hits = (words == labels).sum(TRY)
+    tries = (store["status"] == DONE).sum(TRY)
+    low, high = (
+        xr.DataArray(end, coords=hits.coords, dims=hits.dims)
+        for end in wilson_interval(hits.values, (tries + 0 * hits).values, confidence)
+    )
+    fraction = (hits / tries.where(tries > 0)).transpose(*hits.dims)
+    known = tries > 0
+    return xr.Dataset(
+        {
+            "tries": tries,
+            "hits": hits,
+            "fraction": fraction,
+            "low": low.where(known),
+            "high": high.where(known),
+        },
+        attrs={"confidence": confidence} | {"units": store.attrs.get("units", "{}")},
+    )

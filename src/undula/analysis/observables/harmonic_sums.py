@@ -1,0 +1,229 @@
+"""Compiled weighted sums of harmonics with one another and with signals, and a fit by them."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from undula.jit.compilation import entry, kernel, overwrite
+
+
+@kernel
+def harmonic_sums(
+    clock: Any, signals: Any, weights: Any, frequency: Any, even: Any, mixed: Any
+) -> None:
+    """Add up all that a step of Gauss and Newton takes of the samples, in one pass.
+
+    Parameters
+    ----------
+    clock, weights
+        Times t and weights w, shape ``(m,)``.
+    signals
+        z, complex, shape ``(m, channels)``.
+    frequency
+        f; e_k stands for exp(2 pi i k f t).
+    even
+        Receives the sums of w e_k, w t e_k and w t^2 e_k for k = 0..2 K, shape ``(3, 2 K + 1)``.
+    mixed
+        Receives those of w z conj(e_k) and then of w t z conj(e_k) for k = -K..K, shape ``(2,
+        channels, 2 K + 1)``.
+    """
+    top, middle = even.shape[1], mixed.shape[2] // 2
+    cosine, sine = np.empty(top), np.empty(top)
+    real, imaginary = np.zeros((3, top)), np.zeros((3, top))
+    # Sums of products of real and imaginary parts, of which both signs of k are made.
+    products = np.zeros((2, signals.shape[1], 4, middle + 1))
+    for j in range(clock.shape[0]):
+        phase = 2.0 * math.pi * frequency * clock[j]
+        x, y, u, v = math.cos(phase), math.sin(phase), 1.0, 0.0
+        for k in range(top):
+            cosine[k], sine[k] = u, v
+            u, v = u * x - v * y, u * y + v * x
+        weight = weights[j]
+        for power in range(3):
+            for k in range(top):
+                real[power, k] += weight * cosine[k]
+                imaginary[power, k] += weight * sine[k]
+            if power < 2:
+                for a in range(signals.shape[1]):
+                    p, q = weight * signals[j, a].real, weight * signals[j, a].imag
+                    for k in range(middle + 1):
+                        products[power, a, 0, k] += cosine[k] * p
+                        products[power, a, 1, k] += sine[k] * q
+                        products[power, a, 2, k] += cosine[k] * q
+                        products[power, a, 3, k] += sine[k] * p
+            weight *= clock[j]
+    for power in range(3):
+        for k in range(top):
+            even[power, k] = complex(real[power, k], imaginary[power, k])
+    for power in range(2):
+        for a in range(signals.shape[1]):
+            for k in range(middle + 1):
+                cp, sq, cq, sp = products[power, a, :, k]
+                mixed[power, a, middle - k] = complex(cp - sq, cq + sp)
+                mixed[power, a, middle + k] = complex(cp + sq, cq - sp)
+
+
+@kernel
+def factor_gram(row: Any, lower: Any) -> None:
+    """Write to lower (n, n) the factor of Cholesky of the matrix with entries r_(j - i).
+
+    It is Hermitian, and `row` (n,) holds r_0, r_1 and so on.
+    """
+    for j in range(row.shape[0]):
+        for i in range(j, row.shape[0]):
+            value = np.conj(row[i - j])
+            for k in range(j):
+                value -= lower[i, k] * np.conj(lower[j, k])
+            lower[i, j] = value / lower[j, j] if i > j else complex(math.sqrt(value.real), 0.0)
+
+
+@kernel
+def solve_gram(lower: Any, x: Any) -> None:
+    """Overwrite x (n,) by the solution of the factored system."""
+    n = x.shape[0]
+    for i in range(n):
+        for k in range(i):
+            x[i] -= lower[i, k] * x[k]
+        x[i] /= lower[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            x[i] -= np.conj(lower[k, i]) * x[k]
+        x[i] /= lower[i, i]
+
+
+@kernel
+def times_gram(row: Any, x: Any, out: Any) -> None:
+    """Write to out (n,) the product of the matrix of `factor_gram` with x (n,)."""
+    for i in range(x.shape[0]):
+        total = 0.0j
+        for j in range(x.shape[0]):
+            total += (row[j - i] if j >= i else np.conj(row[i - j])) * x[j]
+        out[i] = total
+
+
+@kernel
+def fit(row: Any, lower: Any, fitted: Any, left: Any, moved: Any, seen: Any, undone: Any) -> Any:
+    """Overwrite the sums of a signal with harmonics by its fit; return its pull and its steepness.
+
+    Parameters
+    ----------
+    row, lower
+        The sums of harmonics with one another, shape ``(3, 2 K + 1)``, and the factor of the first.
+    fitted, left
+        The sums of the signal with harmonics, and those times t, shape ``(2 K + 1,)``.
+    moved
+        Receives the change of the coefficients in time.
+    seen, undone
+        Scratch.
+    """
+    top, pull, steepness = fitted.shape[0], 0.0, 0.0
+    solve_gram(lower, fitted)
+    times_gram(row[1], fitted, seen)
+    for k in range(top):
+        moved[k] = 2.0j * math.pi * (k - top // 2) * fitted[k]
+        pull += (np.conj(moved[k]) * (left[k] - seen[k])).real
+    times_gram(row[2], moved, seen)
+    for k in range(top):
+        steepness += (np.conj(moved[k]) * seen[k]).real
+    times_gram(row[1], moved, seen)
+    overwrite(undone, seen)
+    solve_gram(lower, undone)
+    # What a change of the coefficients could undo does not count.
+    for k in range(top):
+        steepness -= (np.conj(seen[k]) * undone[k]).real
+    return pull, steepness
+
+
+@entry("clock (m), signals (m, c) complex, weights (m)", where=lambda harmonics: harmonics >= 0)
+def refine(
+    clock: Any,
+    signals: Any,
+    weights: Any,
+    frequency: Any,
+    harmonics: Any,
+    most: Any,
+    tolerance: Any,
+    farthest: Any,
+) -> Any:
+    """Return a frequency after steps of Gauss and Newton, and whether it has stayed on its peak.
+
+    Parameters
+    ----------
+    clock, signals, weights, frequency
+        As of `harmonic_sums`; the first guess.
+    harmonics
+        K.
+    most, tolerance
+        So many steps at most, the last one no longer than the tolerance.
+    farthest
+        From the first guess, to be on its peak.
+    """
+    top, channels, start = 2 * harmonics + 1, signals.shape[1], frequency
+    even = np.empty((3, top), dtype=np.complex128)
+    mixed = np.empty((2, channels, top), dtype=np.complex128)
+    lower, scratch = np.empty((top, top), dtype=np.complex128), np.empty_like(even)
+    for _ in range(most):
+        harmonic_sums(clock, signals, weights, frequency, even, mixed)
+        factor_gram(even[0], lower)
+        pull, steepness = 0.0, 0.0
+        for a in range(channels):
+            each = fit(even, lower, mixed[0, a], mixed[1, a], scratch[0], scratch[1], scratch[2])
+            pull += each[0]
+            steepness += each[1]
+        step = pull / steepness if steepness > 0.0 else 0.0
+        frequency += step
+        if not abs(frequency - start) <= farthest:
+            return frequency, False
+        if abs(step) <= tolerance:
+            break
+    return frequency, True
+
+
+@entry(
+    "clock (m), signals (m, c) complex, weights (m), coefficients (c, 2 * harmonics + 1) complex",
+    where=lambda m, harmonics: m > 0 and harmonics >= 0,
+)
+def judge_fit(
+    clock: Any, signals: Any, weights: Any, frequency: Any, harmonics: Any, coefficients: Any
+) -> Any:
+    """Write to coefficients (channels, 2 K + 1) the fit at a frequency, and judge it.
+
+    Parameters are those of `refine`. Returns the weighted squares of the signals without their
+    means and of what the harmonics leave of them, the steepness of the fit, and the pull of what
+    they leave, largest over five weights, as `undula.analysis.observables.harmonics` has it.
+    """
+    count, top, channels = clock.shape[0], 2 * harmonics + 1, signals.shape[1]
+    even = np.empty((3, top), dtype=np.complex128)
+    mixed = np.empty((2, channels, top), dtype=np.complex128)
+    lower, scratch = np.empty((top, top), dtype=np.complex128), np.empty_like(even)
+    pulls = np.zeros((5, top), dtype=np.complex128)
+    harmonic_sums(clock, signals, weights, frequency, even, mixed)
+    factor_gram(even[0], lower)
+    size, rest, steepness = 0.0, 0.0, 0.0
+    wave, turns = np.empty(top, dtype=np.complex128), 2.0 * math.pi / (clock[-1] - clock[0])
+    for a in range(channels):
+        mean = mixed[0, a, harmonics]
+        steepness += fit(even, lower, mixed[0, a], mixed[1, a], scratch[0], scratch[1], scratch[2])[
+            1
+        ]
+        coefficients[a] = mixed[0, a]
+        for j in range(count):
+            left, phase = signals[j, a], 2.0 * math.pi * frequency * clock[j]
+            size += weights[j] * abs(left - mean) ** 2
+            step = complex(math.cos(phase), math.sin(phase))
+            wave[harmonics] = complex(1.0, 0.0)
+            for k in range(harmonics, top - 1):
+                wave[k + 1] = wave[k] * step
+                wave[top - 2 - k] = np.conj(wave[k + 1])
+            for k in range(top):
+                left -= coefficients[a, k] * wave[k]
+            rest += weights[j] * abs(left) ** 2
+            once, twice, root = turns * clock[j], 2.0 * turns * clock[j], math.sqrt(2.0)
+            swings = (1.0, math.cos(once), math.sin(once), math.cos(twice), math.sin(twice))
+            for n in range(5):
+                part = weights[j] * clock[j] * swings[n] * (root if n > 0 else 1.0) * left
+                for k in range(top):
+                    pulls[n, k] += np.conj(scratch[0, k] * wave[k]) * part
+    # Of i times what they would be: `fit` has left the changes in time there.
+    return size, rest, steepness, np.max(np.sum(np.abs(pulls.real), axis=1))

@@ -1,0 +1,176 @@
+"""Compiled sums over the nodes of many shapes, for arrays so small that calls would cost the most.
+
+Shapes are `nodes` (m, N + 1, 3) [L] and `weights` (N + 1,) those of a mean over the arc length. The
+functions around them, in `motion`, `observables`, `alignment`, `planes`, `turning` and `health`,
+say what they are good for.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from undula.jit.compilation import entry
+
+
+@entry(
+    "rows (m, n), places (k, 3) int, nodes (m, k, 3)",
+    where=lambda places, k, n: k == 0 or places.max() < n,
+)
+def gather(rows: Any, places: Any, nodes: Any) -> None:
+    """Write to nodes the numbers at places (N + 1, 3) of rows (m, n); 0 for a negative place."""
+    for i in range(nodes.shape[0]):
+        for k in range(nodes.shape[1]):
+            for a in range(3):
+                nodes[i, k, a] = rows[i, places[k, a]] if places[k, a] >= 0 else 0.0
+
+
+@entry("nodes (m, k, 3), places (k, 3), weights (k), out (m)")
+def distances_from(nodes: Any, places: Any, weights: Any, out: Any) -> None:
+    """Write to out (m,) how far each shape is from places (N + 1, 3), RMS over the arc length."""
+    # Coordinates in a row are added up several at once.
+    each = np.repeat(weights, 3)
+    rows, place = nodes.reshape(nodes.shape[0], each.shape[0]), places.reshape(each.shape[0])
+    for i in range(rows.shape[0]):
+        total = 0.0
+        for j in range(each.shape[0]):
+            total += each[j] * (rows[i, j] - place[j]) ** 2
+        out[i] = math.sqrt(total)
+
+
+@entry("nodes (m, k, 3), weights (k), out (m, 3)")
+def means(nodes: Any, weights: Any, out: Any) -> None:
+    """Write to out (m, 3) the mean position of each shape."""
+    for i in range(nodes.shape[0]):
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(nodes.shape[1]):
+            x += weights[k] * nodes[i, k, 0]
+            y += weights[k] * nodes[i, k, 1]
+            z += weights[k] * nodes[i, k, 2]
+        out[i, 0], out[i, 1], out[i, 2] = x, y, z
+
+
+@entry(
+    "first (a, k, 3), second (b, k, 3), weights (k), distance (m), angle (m)",
+    where=lambda a, b, m: (a == 1 or a == m) and (b == 1 or b == m),
+)
+def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> None:
+    """Write distance and angle (m,) of each pair of shapes after the best turn of the second.
+
+    Either of the two may be one shape only.
+    """
+    for i in range(distance.shape[0]):
+        a, b = first[min(i, first.shape[0] - 1)], second[min(i, second.shape[0] - 1)]
+        along, across = 0.0, 0.0
+        for k in range(weights.shape[0]):
+            along += weights[k] * (a[k, 0] * b[k, 0] + a[k, 1] * b[k, 1])
+            across += weights[k] * (a[k, 1] * b[k, 0] - a[k, 0] * b[k, 1])
+        angle[i] = math.atan2(across, along)
+        size, total = math.sqrt(along * along + across * across), 0.0
+        cosine, sine = (along / size, across / size) if size > 0.0 else (1.0, 0.0)
+        for k in range(weights.shape[0]):
+            x = a[k, 0] - cosine * b[k, 0] + sine * b[k, 1]
+            y = a[k, 1] - sine * b[k, 0] - cosine * b[k, 1]
+            z = a[k, 2] - b[k, 2]
+            total += weights[k] * (x * x + y * y + z * z)
+        distance[i] = math.sqrt(total)
+
+
+@entry("nodes (m, k, 3), place (k, 3), weights (k)")
+def largest_turned(nodes: Any, place: Any, weights: Any) -> Any:
+    """Return the largest distance of shapes from one (N + 1, 3), each after its best turn."""
+    each = np.repeat(weights, 3)
+    rows = nodes.reshape(nodes.shape[0], each.shape[0])
+    beside, across, above = np.zeros(each.shape), np.zeros(each.shape), np.zeros(each.shape)
+    for k in range(weights.shape[0]):
+        beside[3 * k], beside[3 * k + 1] = place[k, 0], place[k, 1]
+        across[3 * k], across[3 * k + 1] = -place[k, 1], place[k, 0]
+        above[3 * k + 2] = place[k, 2]
+    largest = 0.0
+    for i in range(rows.shape[0]):
+        cosine, sine, square = 0.0, 0.0, 0.0
+        for j in range(each.shape[0]):
+            cosine += each[j] * rows[i, j] * beside[j]
+            sine += each[j] * rows[i, j] * across[j]
+        size = math.sqrt(cosine * cosine + sine * sine)
+        cosine, sine = (cosine / size, sine / size) if size > 0.0 else (1.0, 0.0)
+        for j in range(each.shape[0]):
+            turned = cosine * beside[j] + sine * across[j] + above[j]
+            square += each[j] * (rows[i, j] - turned) ** 2
+        largest = max(largest, square)
+    return math.sqrt(largest)
+
+
+@entry("nodes (m, k, 3), weights (k)")
+def second_moments(nodes: Any, weights: Any) -> Any:
+    """Return the weighted sums of x^2 - y^2 and of 2 x y over all shapes."""
+    difference, product = 0.0, 0.0
+    for i in range(nodes.shape[0]):
+        for k in range(nodes.shape[1]):
+            x, y = nodes[i, k, 0], nodes[i, k, 1]
+            difference += weights[k] * (x * x - y * y)
+            product += weights[k] * 2.0 * x * y
+    return difference, product
+
+
+@entry("nodes (m, k, 3), weights (k)")
+def squares_in_plane(nodes: Any, weights: Any, angle: Any) -> Any:
+    """Return the weighted sums of squares along and across the plane at an azimuth."""
+    cosine, sine, along, across = math.cos(angle), math.sin(angle), 0.0, 0.0
+    for i in range(nodes.shape[0]):
+        for k in range(nodes.shape[1]):
+            x, y = nodes[i, k, 0], nodes[i, k, 1]
+            along += weights[k] * (cosine * x + sine * y) ** 2
+            across += weights[k] * (cosine * y - sine * x) ** 2
+    return along, across
+
+
+@entry("nodes (m, k, 3)")
+def link_squares(nodes: Any) -> Any:
+    """Return the least and the largest square of a link's length."""
+    least, largest = np.inf, 0.0
+    for i in range(nodes.shape[0]):
+        for k in range(1, nodes.shape[1]):
+            square = 0.0
+            for a in range(3):
+                square += (nodes[i, k, a] - nodes[i, k - 1, a]) ** 2
+            least, largest = min(least, square), max(largest, square)
+    return least, largest
+
+
+@entry("nodes (m, k, 3)")
+def largest_bend(nodes: Any) -> Any:
+    """Return the largest bend at any joint, the z axis before the first link.
+
+    That is the square of the tangent of half the angle between neighbouring links.
+    """
+    bend = 0.0
+    for i in range(nodes.shape[0]):
+        x0, y0, z0 = 0.0, 0.0, 1.0
+        for k in range(1, nodes.shape[1]):
+            x, y, z = (
+                nodes[i, k, 0] - nodes[i, k - 1, 0],
+                nodes[i, k, 1] - nodes[i, k - 1, 1],
+                nodes[i, k, 2] - nodes[i, k - 1, 2],
+            )
+            length = math.sqrt(x * x + y * y + z * z)
+            x, y, z = x / length, y / length, z / length
+            apart = (x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2
+            together = (x + x0) ** 2 + (y + y0) ** 2 + (z + z0) ** 2
+            bend = max(bend, apart / together)
+            x0, y0, z0 = x, y, z
+    return bend
+
+
+@entry("nodes (m, k, 3), out (k - 1)")
+def lowest_links(nodes: Any, out: Any) -> None:
+    """Write to out (N,) the least z component of each link's direction."""
+    out[:] = 1.0
+    for i in range(nodes.shape[0]):
+        for k in range(out.shape[0]):
+            x, y, z = (
+                nodes[i, k + 1, 0] - nodes[i, k, 0],
+                nodes[i, k + 1, 1] - nodes[i, k, 1],
+                nodes[i, k + 1, 2] - nodes[i, k, 2],
+            )
+            out[k] = min(out[k], z / math.sqrt(x * x + y * y + z * z))

@@ -1,0 +1,1 @@
+"""Quasi-static ramps of a parameter."""

@@ -1,0 +1,1 @@
+"""Classification of the motion that a run ends in."""

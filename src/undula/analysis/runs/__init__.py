@@ -1,0 +1,1 @@
+"""Simulation of a model: advance, observe, stop, classify."""

@@ -1,0 +1,261 @@
+"""Run a model: the call behind `undula.integrate` and behind the command `undula run`."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from undula.analysis.regimes.classify import UNDECIDED
+from undula.analysis.regimes.evidence import GROWTH_FACTOR
+from undula.analysis.regimes.late_window import PLANAR_TOLERANCE
+from undula.analysis.regimes.names import leaves_its_plane
+from undula.analysis.regimes.recurrence import RECURRENT
+from undula.analysis.regimes.trends import Halves, out_of_plane
+from undula.analysis.run_settings import Ending, Schedule
+from undula.analysis.runs.classify_run import CutShortError, Exponents, Watch
+from undula.analysis.runs.run import Run
+from undula.analysis.runs.settling import SHOWN_CYCLES, Settled
+from undula.analysis.runs.simulation import Simulation
+from undula.arrays import State
+from undula.interrupts import interruptible
+from undula.models.model import Model
+from undula.numerics.integration import stepper_state as names
+
+#: Maxima of the energy after which a run to the settled state is asked whether its motion is
+#: irregular, and after twice as many again and again.
+FIRST_ASKED = 240
+#: What is told from the few beats that a run to the solved state shows first.
+BRIEFLY_TOLD = "planar flapping"
+#: What it is else is told from steps that are as exact: errors of larger ones may keep it alive.
+TIGHT = 1e-6
+#: Why there are no Lyapunov exponents although they were begun.
+STOPPED = ("they were interrupted", "they were out of their budget of time")
+#: Runs that ended so are not looked at any longer.
+CUT_SHORT = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run is: time reached and its end at the latest [T], length of the step, seconds.
+
+    While Lyapunov exponents are computed `exponents` says what of them, and the part that is done.
+    """
+
+    time: float
+    end: float
+    step: float
+    steps: int
+    seconds: float
+    exponents: tuple[str, float] | None = None
+
+
+def integrate(
+    model: Model,
+    start: State,
+    *,
+    until: float | Literal["settled", "solved"] = 1.0,
+    limit: float = 10.0,
+    samples: int = 4000,
+    rtol: float = 1e-6,
+    atol: float = 1e-10,
+    budget: float = float("inf"),
+    lyapunov: bool = False,
+    progress: Callable[[Progress], None] | None = None,
+) -> Run:
+    """Integrate a model in time.
+
+    Parameters
+    ----------
+    model : Model
+        For example a `Filament`.
+    start : ndarray, shape (model.size,)
+        The state at time 0, for example ``kicked(model)``.
+    until : float, "settled" or "solved"
+        Time at which the run ends [T]; or until the motion repeats itself; or until then at the
+        latest, but only until a stable straight or spinning state is found next to it.
+    limit : float
+        Time at which a run to the settled state gives up [T].
+    samples : int
+        Number of stored samples; a run to the settled state has up to twice as many.
+    rtol, atol : float
+        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis,
+        and absolute [rad].
+    budget : float
+        Seconds after which the run is ended with what it has; Lyapunov exponents are a part of it.
+    lyapunov : bool
+        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
+    progress : callable, optional
+        Called with a `Progress` every few milliseconds.
+
+    Returns
+    -------
+    Run
+        Also when the run was interrupted (Ctrl-C), ran out of its budget, or failed: its `ending`
+        says so.
+
+    Raises
+    ------
+    InputError
+        An argument is out of its range or the start is no state of the model.
+    """
+    schedule = Schedule(until=until, limit=limit, samples=samples, rtol=rtol, atol=atol)
+    simulation = Simulation.begin(model, start, schedule)
+    begun = time.monotonic()
+    judged = carry_on(simulation, budget=budget, progress=progress)
+    if simulation.ending in CUT_SHORT:
+        return Run.of(simulation, Exponents.NEVER)
+    if lyapunov:
+        left = budget - (time.monotonic() - begun)
+        return with_exponents(simulation, Exponents.ALWAYS, budget=left, progress=progress)
+    return judged or Run.of(simulation)
+
+
+def carry_on(
+    simulation: Simulation,
+    *,
+    budget: float = float("inf"),
+    progress: Callable[[Progress], None] | None = None,
+) -> Run | None:
+    """Advance a simulation to its end, or until Ctrl-C, or until the budget of seconds is spent.
+
+    A run to the settled state also ends when its motion is seen to be chaotic or quasi-periodic. If
+    it has settled but cannot be named yet, it goes on for as long as that takes, up to its limit.
+
+    Returns
+    -------
+    Run or None
+        The run, if its end took judging it.
+    """
+    begun = time.monotonic()
+    due = FIRST_ASKED
+    while due <= simulation.watch.seen:
+        due *= 2
+    with interruptible() as interrupted:
+        watch = _watch(simulation, begun, budget, interrupted, progress)
+        while True:
+            goes_on, seconds = simulation.advance(), time.monotonic() - begun
+            if not goes_on:
+                judged = _settled(simulation, watch)
+                if simulation.ending is not Ending.RUNNING:
+                    return judged
+            if interrupted():
+                simulation.ending = Ending.INTERRUPTED
+                return None
+            if seconds > budget:
+                simulation.ending = Ending.OUT_OF_TIME
+                return None
+            if progress is not None:
+                progress(_progress(simulation, seconds))
+            if simulation.watch.seen >= due:
+                due *= 2
+                judged = _irregular(simulation, watch)
+                if judged is not None:
+                    return judged
+
+
+def with_exponents(
+    simulation: Simulation,
+    exponents: Exponents,
+    *,
+    budget: float = float("inf"),
+    progress: Callable[[Progress], None] | None = None,
+) -> Run:
+    """Judge a run by Lyapunov exponents, too, unless Ctrl-C or the budget of seconds ends them.
+
+    Then the run has none, and tells why (`Run.without_lyapunov`).
+    """
+    with interruptible() as interrupted:
+        watch = _watch(simulation, time.monotonic(), budget, interrupted, progress)
+        return Run.of(simulation, exponents).judged(watch)
+
+
+def _watch(
+    simulation: Simulation,
+    begun: float,
+    budget: float,
+    interrupted: Callable[[], bool],
+    progress: Callable[[Progress], None] | None,
+) -> Watch:
+    """Return what shows how far exponents are, and ends them after Ctrl-C or the budget."""
+
+    def watch(what: str, part: float) -> None:
+        seconds = time.monotonic() - begun
+        if interrupted():
+            raise CutShortError(STOPPED[0])
+        if seconds > budget:
+            raise CutShortError(STOPPED[1])
+        if progress is not None:
+            progress(replace(_progress(simulation, seconds), exponents=(what, part)))
+
+    return watch
+
+
+def _settled(simulation: Simulation, watch: Watch) -> Run | None:
+    """Return a run that has settled; have it go on if it takes more of it to name the motion."""
+    if simulation.ending is not Ending.SETTLED:
+        return None
+    run, settled = Run.of(simulation), simulation.settled
+    if settled and settled.brief and not _briefly_told(run, settled, watch):
+        if settled.brief == 1 and simulation.schedule.rtol > TIGHT:
+            simulation.tighten(TIGHT)
+            return None
+        simulation.settled = _shown_again(settled, run)
+        simulation.ending = Ending.RUNNING
+    elif (longer := run.judged(watch).verdict.longer) and simulation.time < simulation.schedule.end:
+        simulation.shown_until = simulation.time + longer
+        simulation.ending = Ending.RUNNING
+    return run
+
+
+def _briefly_told(run: Run, settled: Settled, watch: Watch) -> bool:
+    """Tell whether a run shows enough to be named; what leaves its plane has no name yet."""
+    # That is a part of judging it which is told for far less than the whole.
+    unrest = leaves_its_plane(run.since(settled.since).nodes)
+    return not unrest and run.judged(watch).verdict.name == BRIEFLY_TOLD
+
+
+def _shown_again(settled: Settled, run: Run) -> Settled:
+    """Return a motion that was shown too briefly as it is to be shown next: later, then longer."""
+    if settled.brief == 1:
+        return replace(settled, cycles=SHOWN_CYCLES, brief=0)
+    half = 0.5 * (float(run.motion.time[-1]) - settled.since)
+    since = settled.since + half * (1.0 + _until_flat(out_of_plane(run.since(settled.since).nodes)))
+    return replace(settled, since=since, brief=settled.brief - 1)
+
+
+def _until_flat(share: Halves) -> float:
+    """Return in how many halves more of a window a motion will be flat, if it flattens at all."""
+    if not share.first > GROWTH_FACTOR * share.last > GROWTH_FACTOR * PLANAR_TOLERANCE:
+        return 0.0
+    return math.log(share.last / PLANAR_TOLERANCE) / math.log(share.first / share.last)
+
+
+def _irregular(simulation: Simulation, watch: Watch) -> Run | None:
+    """Return a run that waits for its motion to repeat itself if it is seen not to."""
+    if not simulation.schedule.open_ended or simulation.settled is not None:
+        return None
+    if simulation.watch.returned().min(initial=np.inf) <= RECURRENT:
+        return None  # it does, but for a little, and takes its time to settle
+    if simulation.schedule.until == "solved" and simulation.schedule.rtol > TIGHT:
+        simulation.tighten(TIGHT)
+        return None
+    simulation.ending = Ending.IRREGULAR
+    run = Run.of(simulation).judged(watch)
+    if run.lyapunov is not None and run.verdict.name != UNDECIDED:
+        return run
+    simulation.ending = Ending.RUNNING
+    return None
+
+
+def _progress(simulation: Simulation, seconds: float) -> Progress:
+    memory = simulation.memory
+    return Progress(
+        time=simulation.time,
+        end=simulation.schedule.end,
+        step=float(memory.real[names.STEP]),
+        steps=int(memory.count[names.STEPS]),
+        seconds=seconds,
+    )

@@ -1,0 +1,300 @@
+"""A run in the making: it can be advanced, watched, saved, stopped and taken up again.
+
+`Simulation` owns the integrator's memory and what has been sampled so far. Samples lie at multiples
+of one interval. A run to a given time has the interval that gives the asked number of samples; a
+run to the settled state, whose length is not known, starts with a fine one and doubles it, dropping
+every other sample, whenever there are twice as many as asked.
+"""
+
+import math
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+
+from undula.analysis.observables.alignment import comparison
+from undula.analysis.run_settings import Ending, Schedule
+from undula.analysis.runs.early_stop import Arrival, Lookout
+from undula.analysis.runs.memory_needed import refuse_too_large
+from undula.analysis.runs.sample_buffer import Recent, parts_of
+from undula.analysis.runs.settling import Pace, Settled, Watch
+from undula.arrays import Array, State
+from undula.errors import InputError
+from undula.models.given_shapes import numbers, refuse_misfits
+from undula.models.model import Model
+from undula.numerics.integration import stepper_state as names
+from undula.numerics.integration.schemes import NDF
+from undula.numerics.integration.status import Status
+from undula.numerics.integration.stepper_state import Memory, start
+from undula.numerics.integration.system import RATES
+from undula.numerics.integration.time_loop import advance
+
+#: Steps and samples between two looks at the run: about a millisecond.
+MOST_STEPS, MOST_SAMPLES = 150, 256
+#: Inclination over the number of links that round-off makes of a straight start [rad].
+ROUND_OFF = 8.0 * float(np.finfo(float).eps)
+#: A run with this many samples a period needs no close-up.
+ENOUGH_A_PERIOD = 24.0
+#: The memory is kept so often, and at looks so many steps apart, so that the last periods can be
+#: sampled again more finely.
+KEPT_MARKS, MARKED_STEPS = 400, 450
+
+
+@dataclass
+class Simulation:
+    """A run in the making. Use `begin` or `resume` to get one.
+
+    Attributes
+    ----------
+    model, schedule
+        What runs, and how.
+    memory : Memory
+        The integrator's.
+    interval : float
+        Time between samples [T].
+    rows : list of ndarray
+        Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals
+        of the turning rate, of the active power and of the dissipation.
+    recent : Recent
+        Samples at finer intervals, of the end so far.
+    arrival : Arrival or None
+        The state that a run to the solved one was left for.
+    tight_from : float or None
+        Time from which on its steps are more exact than was asked for, see `tighten` [T].
+    sampled : int
+        Number of samples so far.
+    shown_until : float
+        A motion that has settled is shown until then, or until it has been seen often enough [T].
+    """
+
+    model: Model
+    schedule: Schedule
+    memory: Memory
+    interval: float
+    rows: list[Array] = field(default_factory=list)
+    ending: Ending = Ending.RUNNING
+    settled: Settled | None = None
+    arrival: Arrival | None = None
+    tight_from: float | None = None
+    shown_until: float = 0.0
+    cause: str = ""
+    recent: Recent = field(default_factory=Recent)
+    sampled: int = field(init=False)
+    marks: deque[Memory] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
+
+    def __post_init__(self) -> None:
+        """Make what follows from the rest."""
+        self.sampled = sum(map(len, self.rows))  # asked for several times a look
+        self.options = self.schedule.options(self.model)
+        first = self.rows[0][0] if self.rows else self.memory.differences[0]
+        departure = self.model.departure(self.model.positions(first[:-RATES]))
+        if departure <= ROUND_OFF * self.model.links:
+            departure = 0.0
+        compare = comparison(axisymmetric=self.model.axisymmetric)
+        self.watch = Watch(self.schedule.rtol, departure, compare, self.schedule.until == "solved")
+        self.lookout = Lookout(self.model)
+        self.marks.append(copied(self.memory))
+
+    @classmethod
+    def begin(cls, model: Model, x: State, schedule: Schedule) -> Self:
+        """Return the run of `model` from the state x at time 0."""
+        refuse_too_large(model, schedule)
+        x = numbers(x, "the start")
+        if x.shape != (model.size,):
+            shapes = f"a start of shape {x.shape} is no state of this model"
+            raise InputError(f"{shapes}; give {model.size} finite numbers")
+        refuse_misfits(model.nodes(x), extensible=model.extensible)
+        x = model.admissible(x)
+        unknowns, rates = model.unknowns(x), model.rates(x)
+        speed = float(np.abs(model.positions(rates[:-RATES])).max())
+        reach = schedule.atol + schedule.rtol * float(np.abs(x - model.straight()).max())
+        step = reach / speed if speed > 0.0 else schedule.end * 1e-3
+        memory = start(model.system, NDF, unknowns, rates, 0.0, min(step, schedule.end))
+        return cls(model, schedule, memory, schedule.interval)
+
+    @property
+    def time(self) -> float:
+        """Time that the samples have reached [T]."""
+        return max(0, self.sampled - 1) * self.interval
+
+    @property
+    def times(self) -> Array:
+        """Times of the samples [T], shape (m,)."""
+        return self.interval * np.arange(self.sampled, dtype=np.float64)
+
+    @property
+    def states(self) -> Array:
+        """The samples, shape (m, n + RATES)."""
+        if len(self.rows) != 1:
+            width = self.memory.differences.shape[1]
+            self.rows = [np.concatenate([np.zeros((0, width)), *self.rows])]
+        return self.rows[0]
+
+    def advance(self) -> bool:
+        """Go on for some milliseconds; return whether there is more to do."""
+        last = math.ceil(self.schedule.end / self.interval - 1e-9)
+        ahead = np.arange(self.sampled, min(self.sampled + MOST_SAMPLES, self._enough(), last + 1))
+        if ahead.size == 0:
+            self.ending = self._last_ending()
+            return False
+        width = self.memory.differences.shape[1]
+        noted = self._parts()
+        parts = max(1, noted)
+        fine = np.arange(self._first(parts), ahead[-1] * parts + 1)
+        most = self.lookout.steps if self.schedule.until == "solved" else MOST_STEPS
+        states, sections = np.empty((fine.size, width)), np.empty((most, 1 + width))
+        code, filled, found = advance(
+            self.model.system,
+            self.memory,
+            self.options,
+            self.interval / parts * fine,
+            states,
+            sections,
+            most,
+        )
+        # A look may end long before all times are reached: what is kept is not to hold the rest.
+        states = states if filled == fine.size else states[:filled].copy()
+        self._keep(states if parts == 1 else states[-fine[0] % parts :: parts].copy())
+        if noted:
+            self.recent.note(self.interval / parts, int(fine[0]), states)
+        status = Status(code)
+        if not np.isfinite(self.memory.differences[0]).all():
+            status = Status.NOT_FINITE
+            self.rows[-1] = self.rows[-1][np.isfinite(self.rows[-1]).all(axis=1)]
+            self.sampled = sum(map(len, self.rows))
+        if status not in (Status.DONE, Status.PAUSED):
+            self.ending, self.cause = Ending.FAILED, status.advice
+            return False
+        if self.memory.count[names.STEPS] >= self.marks[-1].count[names.STEPS] + MARKED_STEPS:
+            self.marks.append(copied(self.memory))
+        shapes = self._nodes(sections[:found, 1:]) if found else ()
+        self.watch.note(self._pace(), list(zip(sections[:found, 0].tolist(), shapes, strict=True)))
+        return not self.schedule.open_ended or self._goes_on()
+
+    def _keep(self, rows: Array) -> None:
+        """Add samples to those so far."""
+        self.rows.append(rows)
+        self.sampled += len(rows)
+
+    def _parts(self) -> int:
+        """Return in how many parts an interval is sampled for the close-up; 0 if for none."""
+        fast, _ = self.watch.periods(self.time)
+        if not self.schedule.open_ended or fast is None or self.watch.turns_steadily():
+            return 0
+        return parts_of(self.interval, fast, self.recent.interval)
+
+    def _first(self, parts: int) -> int:
+        """Return which multiple of a part of the interval is sampled next."""
+        following = max(0, self.sampled - 1) * parts + min(1, self.sampled)
+        if parts == 1:
+            return following
+        interval, real = self.interval / parts, self.memory.real
+        noted = self.recent.following(interval)
+        if noted is not None and noted >= following:
+            return noted
+        # Of what lies behind the last step nothing is known any more.
+        known = math.floor(float(real[names.TIME] - real[names.STEP]) / interval) + 1
+        return max(following, min(known, self.sampled * parts))
+
+    def _enough(self) -> int:
+        """Return how many samples are enough as far as is known: those of a motion as shown."""
+        if not self.schedule.open_ended or self.settled is None:
+            return np.iinfo(np.int64).max
+        until = max(self.settled.shown_until, self.shown_until)
+        return max(self.sampled, math.ceil(until / self.interval - 1e-9)) + 1
+
+    def _last_ending(self) -> Ending:
+        """Return the ending of a run whose time is over."""
+        if not self.schedule.open_ended:
+            return Ending.DONE
+        return Ending.SETTLED if self.settled else Ending.LIMIT
+
+    def _goes_on(self) -> bool:
+        """Judge whether the motion has settled and been shown; thin the samples of a long run."""
+        if self.schedule.until == "solved":
+            last = self.rows[-1][-1] if len(self.rows[-1]) else self.states[-1]
+            self.arrival = self.lookout.arrival(self.watch.paces, self.time, last[:-RATES])
+            if self.arrival:
+                self.ending = Ending.SOLVED
+                return False
+        found = self.watch.settled()
+        if found is None or self.settled is None:
+            self.settled = found  # a motion that leaves again had not settled
+        shown = self.settled.shown_until if self.settled else math.inf
+        if self.time >= max(shown, self.shown_until):
+            self.ending = Ending.SETTLED
+            return False
+        if self.sampled >= 2 * self.schedule.samples:
+            self.rows, self.sampled = [self.states[::2].copy()], -(-self.sampled // 2)
+            self.interval *= 2.0
+        return True
+
+    def tighten(self, rtol: float) -> None:
+        """Go on with more exact steps, and begin anew to watch whether it settles."""
+        self.schedule = replace(self.schedule, rtol=rtol)
+        self.tight_from, self.settled, self.shown_until = self.time, None, 0.0
+        self.ending = Ending.RUNNING
+        self.marks.clear()  # whose steps were others
+        self.__post_init__()
+
+    def _pace(self) -> Pace:
+        real = self.memory.real
+        return Pace(
+            time=float(real[names.TIME]),
+            shape_speed=float(real[names.SHAPE_SPEED]),
+            displacement=float(real[names.DISPLACEMENT]),
+            turn_rate=float(real[names.TURN_RATE]),
+        )
+
+    def _nodes(self, rows: Array) -> Array:
+        return self.model.nodes(self.model.positions(rows[:, :-RATES]))
+
+    @property
+    def earliest_mark(self) -> float:
+        """Time from which on the run can be sampled again [T]."""
+        return float(self.marks[0].real[names.TIME])
+
+    def mark_before(self, time: float) -> Memory:
+        """Return the last mark at or before a time, from the earliest mark to the end [T]."""
+        earlier = (mark for mark in reversed(self.marks) if mark.real[names.TIME] <= time)
+        found: Memory = next(earlier)
+        return found
+
+    def checkpoint(self) -> dict[str, Array]:
+        """Return all that `resume` needs, as arrays that stay as they are when the run goes on."""
+        saved: dict[str, Any] = {"states": self.states, "interval": np.float64(self.interval)}
+        saved["shown_until"] = np.float64(self.shown_until)
+        if self.tight_from is not None:
+            saved["tight"] = np.array([self.tight_from, self.schedule.rtol])
+        saved |= {f"watch_{name}": array for name, array in self.watch.to_arrays().items()}
+        for prefix, memory in (("memory", self.memory), ("mark", self.marks[0])):
+            for name, array in memory._asdict().items():
+                saved[f"{prefix}_{name}"] = np.array(array)
+        return saved
+
+    @classmethod
+    def resume(cls, model: Model, schedule: Schedule, saved: Mapping[str, Array]) -> Self:
+        """Return the run that a checkpoint was taken of, ready to go on to `schedule`'s end."""
+        memory, mark = (
+            Memory(*(np.array(saved[f"{prefix}_{name}"]) for name in Memory._fields))
+            for prefix in ("mark", "memory")[::-1]
+        )
+        refuse_too_large(model, schedule)
+        since, rtol = saved.get("tight", (None, schedule.rtol))
+        schedule = replace(schedule, rtol=float(rtol))
+        simulation = cls(
+            model, schedule, memory, float(saved["interval"]), [np.array(saved["states"])]
+        )
+        simulation.tight_from = None if since is None else float(since)
+        simulation.shown_until = float(saved["shown_until"])
+        simulation.marks.appendleft(mark)
+        watched = ("seen", "paces", "return_times", "return_nodes")
+        simulation.watch.note_arrays({name: saved[f"watch_{name}"] for name in watched})
+        return simulation
+
+
+def copied(memory: Memory) -> Memory:
+    """Return a memory that stays as it is when the run goes on."""
+    return Memory(*(array.copy() for array in memory))

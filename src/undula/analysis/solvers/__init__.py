@@ -1,0 +1,1 @@
+"""Solvers for states, their branches and their thresholds."""

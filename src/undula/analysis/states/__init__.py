@@ -1,0 +1,1 @@
+"""Solved states and branches of them, as records."""

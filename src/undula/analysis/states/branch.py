@@ -1,0 +1,95 @@
+"""A branch of states along a parameter, and its bifurcations, as records."""
+
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+from undula.analysis.observables.shapes import Range
+from undula.arrays import Array, ComplexArray
+
+
+class State(Protocol):
+    """What a branch asks of its states."""
+
+    @property
+    def exponents(self) -> ComplexArray:
+        """Of disturbances, by falling real part, without the trivial ones."""
+
+    @property
+    def frequency(self) -> float:
+        """Cycles per T."""
+
+    @property
+    def energy(self) -> Range:
+        """Bending energy over a cycle [B/L]."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether all disturbances decay."""
+
+
+S = TypeVar("S", bound=State)
+
+
+@dataclass(frozen=True)
+class Bifurcation(Generic[S]):
+    """A point of a branch at which a disturbance turns from decay to growth, or back.
+
+    Attributes
+    ----------
+    kind : str
+        "fold", "torus", "symmetry breaking", "period doubling", "Hopf" or "branch point".
+    value, error : float
+        The parameter there, and how exactly it was located on the discrete model.
+    state : State
+        The state there.
+    frequency : float
+        Of the state [cycles per T].
+    second_frequency : float or None
+        Of the disturbance that turns, seen in the state's own frame [cycles per T].
+    unstable_before, unstable_after : int
+        How many disturbances grow before and after, in the direction of following.
+    """
+
+    kind: str
+    value: float
+    error: float
+    state: S
+    frequency: float
+    second_frequency: float | None
+    unstable_before: int
+    unstable_after: int
+
+    @property
+    def loses(self) -> bool:
+        """Whether the state is stable before and not after."""
+        return self.unstable_before == 0 < self.unstable_after
+
+    @property
+    def gains(self) -> bool:
+        """Whether the state is stable after and not before."""
+        return self.unstable_after == 0 < self.unstable_before
+
+
+@dataclass(frozen=True)
+class Branch(Generic[S]):
+    """States along a parameter, in the order in which they were followed.
+
+    Attributes
+    ----------
+    parameter : str
+        Name of the parameter.
+    values : ndarray of shape (m,)
+        Its values.
+    states : tuple of State
+        The states, m of them.
+    bifurcations : tuple of Bifurcation
+        Located in between.
+    complete : bool
+        Whether the branch came to the end that was asked for.
+    """
+
+    parameter: str
+    values: Array
+    states: tuple[S, ...]
+    bifurcations: tuple[Bifurcation[S], ...]
+    complete: bool

@@ -1,0 +1,151 @@
+"""A relative periodic orbit, as a record: a shape that repeats itself up to a turn."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from undula.analysis.observables.period_statistics import finely, over_period
+from undula.analysis.observables.shapes import (
+    Range,
+    mean_position,
+    tip_height,
+    transverse,
+)
+from undula.arrays import Array, ComplexArray, Shapes
+from undula.models.model import Model
+
+# A line of so few cycles in a period is the mean of a motion that does not turn.
+_AT_REST = 1e-6
+
+
+@dataclass(frozen=True)
+class Periodic:
+    """A motion that repeats itself after a time, turned by an angle: x(t + T) = R(angle) x(t).
+
+    The angle is 0 for a body that is held in one direction.
+
+    Modulated spinning, precessing flapping and other toroidal motions are of this kind.
+
+    Attributes
+    ----------
+    model : Model
+    duration : float
+        The time after which the shape repeats itself [T].
+    angle : float
+        The angle by which it has turned then [rad].
+    unknowns : ndarray of shape (m, n)
+        Positions and multipliers at equally spaced instants, the last one after `duration`.
+    residual : float
+        By how much the motion fails to close [L].
+    exponents : ndarray of shape (k,)
+        Of disturbances [1/T], by falling real part, without trivial ones.
+    trivial : tuple of float
+        Errors of the multipliers of a shift in time and of a turn about the axis.
+    time_error : float
+        Estimated error of the frequency by the steps in time [cycles per T].
+    error : float or None
+        Estimated error of the frequency against the body that the numbers stand for, of links and
+        steps together [cycles per T]; None if it was not asked for.
+    """
+
+    model: Model
+    duration: float
+    angle: float
+    unknowns: Array
+    residual: float
+    exponents: ComplexArray
+    trivial: tuple[float, ...]
+    time_error: float = np.nan
+    error: float | None = None
+
+    @property
+    def nodes(self) -> Shapes:
+        """Positions of the nodes (m, N + 1, 3) [L]."""
+        return self.model.nodes(self.model.positions(self.unknowns))
+
+    @property
+    def start(self) -> Array:
+        """The state of the model at the beginning, shape (size,)."""
+        end = self.model.positions(self.unknowns[-1])
+        return self.model.rotate(end, -self.angle) if self.model.axisymmetric else end
+
+    @property
+    def force(self) -> float:
+        """Total follower force [B/L^2]."""
+        return self.model.load.force
+
+    @cached_property
+    def turns(self) -> float:
+        """Cycles during `duration` of the strongest line of the mean position, seen from the lab.
+
+        The shape tells how far it has turned up to full turns only; which line is the strongest
+        tells the rest, as it does for the frequency of a run. Positive from x to y.
+        """
+        across = self._turned_back(transverse(mean_position(self.nodes)))
+        lines = np.fft.fft(across)
+        cycles = self.angle / (2.0 * np.pi) + np.fft.fftfreq(across.size, 1.0 / across.size)
+        moving = np.where(np.abs(cycles) > _AT_REST, np.abs(lines), 0.0)
+        return float(cycles[np.argmax(moving)])
+
+    @property
+    def frequency(self) -> float:
+        """Cycles per T of the whole motion, that of its strongest line as for a run."""
+        return abs(self.turns) / self.duration
+
+    @property
+    def solver_error(self) -> float:
+        """Estimated error of the frequency on these links [cycles per T]."""
+        return self.time_error
+
+    @property
+    def shape_frequency(self) -> float:
+        """Repetitions of the shape per T."""
+        return 1.0 / self.duration
+
+    @cached_property
+    def energy(self) -> Range:
+        """Bending energy [B/L]."""
+        return over_period(self.model.observe(self.unknowns).bending_energy)
+
+    @cached_property
+    def tip_radius(self) -> Range:
+        """Distance of the tip from the axis [L]."""
+        # Near the axis the distance has a kink, which the way of the tip has not.
+        across = self._turned_back(transverse(self.nodes[:, -1]))
+        return over_period(np.hypot(finely(across.real), finely(across.imag)))
+
+    def _turned_back(self, across: ComplexArray) -> ComplexArray:
+        """Return x + i y (m,) in a frame that turns with the motion, in which it is periodic."""
+        passed = np.arange(1, across.size + 1) / across.size
+        return np.asarray(across * np.exp(-1j * self.angle * passed), dtype=np.complex128)
+
+    @cached_property
+    def tip_height(self) -> Range:
+        """Height of the tip above the clamp [L]."""
+        return over_period(tip_height(self.nodes))
+
+    @cached_property
+    def power_balance_error(self) -> float:
+        """Difference of active power and dissipation in the mean, relative to either."""
+        observed = self.model.observe(self.unknowns)
+        active, dissipated = np.mean(observed.active_power), np.mean(observed.dissipation)
+        return float(abs(active - dissipated) / abs(active))
+
+    @property
+    def leading_rate(self) -> float:
+        """Largest growth rate of a disturbance [1/T]."""
+        return float(self.exponents[0].real)
+
+    @property
+    def stable(self) -> bool:
+        """Whether all disturbances decay."""
+        return self.leading_rate < 0.0
+
+    def __str__(self) -> str:
+        """Tell it in one line."""
+        word = "stable" if self.stable else "unstable"
+        return (
+            f"{self.frequency:.8g} cycles and {self.shape_frequency:.8g} shapes per T under force"
+            f" {self.force:.6g}: {word}, leading rate {self.leading_rate:.4g} /T"
+        )

@@ -1,0 +1,116 @@
+"""The last part of a run: its figure and movie, its answer and its exit status."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from undula.analysis.run_settings import Ending
+from undula.app.commands.drawing import draw_figure, draw_movie, figure_path, movie_path
+from undula.app.commands.run import compute
+from undula.app.commands.run_job import Job
+from undula.app.commands.run_text import run_text
+from undula.errors import InputError
+from undula.storage.outputs import Claim, discard
+from undula.storage.run_file import load_result
+from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
+
+_VIEWS = (("figure", draw_figure), ("movie", draw_movie))
+_ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.SOLVED, Ending.IRREGULAR, Ending.LIMIT)
+
+
+def views_of(result: Path, *, with_movie: bool = True) -> list[Path]:
+    """Return the names of the figure of a result and of its movie, which are made beside it."""
+    return [figure_path(result, None), *([movie_path(result, None)] if with_movie else [])]
+
+
+def finish(
+    job: Job,
+    claim: Claim,
+    views: Sequence[Path],
+    *,
+    budget: float,
+    lyapunov: bool,
+    as_json: bool,
+) -> int:
+    """Carry a run to its end, draw it, and answer.
+
+    Parameters
+    ----------
+    job
+        The run.
+    claim
+        On its file and its views.
+    views
+        Names of those to be made; a run that is stopped early has no movie.
+    budget
+        Seconds after which it is ended with what it has.
+    lyapunov
+        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
+    as_json
+        Whether to answer in JSON.
+
+    Returns
+    -------
+    int
+        The exit status: 0 if all was done, 3 if not, the result being kept.
+    """
+    computed = compute(job, budget, lyapunov=lyapunov)
+    for path in views_of(job.result):
+        discard(path)  # of a result that this one has replaced: they would mislead
+    stopped = job.simulation.ending in (Ending.INTERRUPTED, Ending.OUT_OF_TIME)
+    stored = load_result(job.result)
+    made, complete = _draw(stored, job.result, claim, views[:1] if stopped else views)
+    complete = complete and not computed.without
+    answer = json.loads(stored.attrs["summary"]) | _seed(job)
+    answer |= {"seconds": computed.seconds, "output": str(job.result)} | made
+    _tell_of_trouble(job, computed.without)
+    reply(answer, run_text(answer), as_json=as_json)
+    return DONE if complete and job.simulation.ending in _ENDED_WELL else STOPPED_EARLY
+
+
+def _seed(job: Job) -> dict[str, Any]:
+    start = job.wanted.dump()["start"]
+    return {"seed": start["seed"]} if "seed" in start else {}
+
+
+def _draw(
+    stored: xr.Dataset, result: Path, claim: Claim, views: Sequence[Path]
+) -> tuple[dict[str, str | None], bool]:
+    """Draw what can be drawn; return the names by kind, and whether nothing failed."""
+    made: dict[str, str | None] = {"figure": None, "movie": None}
+    try:
+        # A run without a movie has the figure alone.
+        for (kind, draw), path in zip(_VIEWS, views, strict=False):
+            draw(stored, path, claim)
+            made[kind] = str(path)
+    except InputError as error:
+        notice(f"{error}; the result is stored in {result}")
+        return made, False
+    except KeyboardInterrupt:
+        notice(f"stopped; the result is stored in {result}, undula plot and movie draw it")
+        return made, False
+    return made, True
+
+
+def _tell_of_trouble(job: Job, without: str) -> None:
+    """Say why a run has ended early, and what to do."""
+    ending, time = job.simulation.ending, job.simulation.time
+    if ending is Ending.FAILED:
+        notice(
+            f"the run failed at t = {time:.6g}: {job.simulation.cause}; everything up to there is"
+            f" in {job.result}"
+        )
+    elif ending not in _ENDED_WELL:
+        why = "interrupted" if ending is Ending.INTERRUPTED else "out of its budget of time"
+        notice(
+            f"the run was {why} at t = {time:.6g}; everything so far is in {job.result}, go on"
+            f" with: undula resume {job.result}"
+        )
+    elif without:
+        notice(
+            f"no Lyapunov exponents: {without}; the run without them is in {job.result}, later"
+            f" ones come with: undula resume {job.result} --lyapunov --until T"
+        )

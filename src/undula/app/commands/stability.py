@@ -1,0 +1,208 @@
+"""The questions of `undula stability`: asked of the analysis, answered and drawn.
+
+Plotting is imported only if there is something to plot: the answer itself takes milliseconds.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from undula.analysis.linear.results import CriticalCurve, GrowthCurve, Onset, Spectrum
+from undula.analysis.linear.stability import critical_curve, critical_force, growth_curve, spectrum
+from undula.analysis.parameters import changed
+from undula.app.commands import stability_text as text
+from undula.inputs.build import build_model
+from undula.inputs.input import StabilityInput
+from undula.models.model import Model
+from undula.models.units import Units
+from undula.terminal.output import Told
+from undula.terminal.progress import counted
+from undula.terminal.units_text import force_in
+
+Values = tuple[float, ...]
+
+# The figure of a single case shows this many forces, so far beyond the threshold and the force.
+_SHOWN, _BEYOND = 241, 1.3
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of the straight state.
+
+    Attributes
+    ----------
+    wanted : StabilityInput
+    forces : tuple of float or None
+        Forces at which the leading eigenvalue is asked for.
+    along : (str, tuple of float) or None
+        A parameter with its values.
+    """
+
+    wanted: StabilityInput
+    forces: Values | None
+    along: tuple[str, Values] | None
+
+
+def ask(question: Question) -> tuple[Told, Callable[[], Any]]:
+    """Answer a question; return the answer, and what draws it.
+
+    Raises
+    ------
+    InputError
+        A value is out of its range.
+    """
+    if question.forces is not None:
+        answered, draw = _ask_growth(question, question.forces)
+    elif question.along is not None:
+        answered, draw = _ask_thresholds(question, *question.along)
+    else:
+        answered, draw = _ask_onset(question)
+    head = {"status": "done", "load": _title(question)}
+    return Told(head | answered.answer, answered.text), draw
+
+
+def _ask_onset(question: Question) -> tuple[Told, Callable[[], Any]]:
+    model, options = _model(question)
+    onset, at_force = critical_force(model, **options), spectrum(model, **options)
+    title, units = _title(question), model.units
+
+    def draw() -> Any:
+        from undula.views import stability_portrait
+
+        far = _BEYOND * max(onset.force or 0.0, at_force.force, 1.0)
+        growth = growth_curve(model, np.linspace(0.0, far, _SHOWN), **options)
+        return stability_portrait(onset, growth, at_force, title=title, units=units.names())
+
+    told = text.onset_text(title, onset, at_force, units)
+    return Told(onset_answer(onset, at_force, units), told), draw
+
+
+def _ask_growth(question: Question, forces: Values) -> tuple[Told, Callable[[], Any]]:
+    model, options = _model(question)
+    name, values = question.along or (None, None)
+    with counted("growth rates") as progress:
+        growth = growth_curve(
+            model, forces, parameter=name, values=values, progress=progress, **options
+        )
+    title, units = _title(question), model.units
+
+    def draw() -> Any:
+        from undula.views import growth_figure
+
+        return growth_figure(growth, title=title, units=units.names())
+
+    return Told(growth_answer(growth, units), text.growth_text(title, growth, units)), draw
+
+
+def _ask_thresholds(
+    question: Question, name: str, values: Values
+) -> tuple[Told, Callable[[], Any]]:
+    model, options = _model(question)
+    with counted("thresholds") as progress:
+        curve = critical_curve(model, name, values, progress=progress, **options)
+    title = _title(question)
+    # A chain of other links has other further units.
+    units = [changed(model, name, value).units for value in values]
+
+    def draw() -> Any:
+        from undula.views import threshold_figure
+
+        return threshold_figure(curve, title=title, units=model.units.names())
+
+    return Told(thresholds_answer(curve, units), text.thresholds_text(title, curve, units)), draw
+
+
+def onset_answer(onset: Onset, at_force: Spectrum, units: Units) -> dict[str, Any]:
+    """Return an onset, with the spectrum at the given force, in plain JSON types."""
+    later = [
+        {
+            "force": crossing.force,
+            **force_in(units, crossing.force),
+            "frequency": crossing.frequency,
+            "growth_slope": crossing.growth_slope,
+            "error": crossing.error,
+            "frequency_error": crossing.frequency_error,
+        }
+        for crossing in onset.later
+    ]
+    leading = zip(at_force.rates, at_force.frequencies, at_force.errors, strict=True)
+    return {
+        "units": units.names(),
+        "method": onset.method,
+        "paper_time": onset.paper_time,
+        **_thresholds(onset, units),
+        "later": later,
+        "force": at_force.force,
+        **force_in(units, at_force.force),
+        "spectrum": [
+            {"rate": float(rate), "frequency": float(frequency), "error": float(error)}
+            for rate, frequency, error in leading
+        ],
+    }
+
+
+def growth_answer(growth: GrowthCurve, units: Units) -> dict[str, Any]:
+    """Return leading rates and frequencies, one entry for each force (and value)."""
+    points = []
+    for place in np.ndindex(growth.rates.shape):
+        of_parameter = {}
+        if growth.parameter is not None and growth.values is not None:
+            of_parameter = {growth.parameter: float(growth.values[place[0]])}
+        point = {
+            "force": float(growth.forces[place[-1]]),
+            "rate": float(growth.rates[place]),
+            "frequency": float(growth.frequencies[place]),
+            "error": float(growth.errors[place]),
+        }
+        points.append(of_parameter | point)
+    return {
+        "units": units.names(),
+        "method": growth.method,
+        "paper_time": growth.paper_time,
+        "points": points,
+    }
+
+
+def thresholds_answer(curve: CriticalCurve, units: Sequence[Units]) -> dict[str, Any]:
+    """Return the thresholds along a parameter, one entry for each value."""
+    return {
+        "units": units[0].names(),
+        "method": curve.method,
+        "paper_time": curve.onsets[0].paper_time,
+        "parameter": curve.parameter,
+        "thresholds": [
+            {curve.parameter: float(value)} | _thresholds(onset, each)
+            for value, onset, each in zip(curve.values, curve.onsets, units, strict=True)
+        ],
+    }
+
+
+def _thresholds(onset: Onset, units: Units) -> dict[str, Any]:
+    hopf = onset.hopf
+    return {
+        "oscillatory_force": onset.oscillatory_force,
+        **force_in(units, onset.oscillatory_force, "oscillatory_"),
+        "oscillatory_error": onset.oscillatory_error,
+        "hopf_force": onset.force,
+        **force_in(units, onset.force, "hopf_"),
+        "hopf_frequency": hopf.frequency if hopf else None,
+        "hopf_growth_slope": hopf.growth_slope if hopf else None,
+        "error": hopf.error if hopf else None,
+        "frequency_error": hopf.frequency_error if hopf else None,
+        "searched_to": onset.searched_to,
+        "reason": None if hopf else str(onset),
+    }
+
+
+def _model(question: Question) -> tuple[Model, dict[str, Any]]:
+    table = question.wanted.stability
+    return build_model(question.wanted), {"method": table.method, "paper_time": table.paper_time}
+
+
+def _title(question: Question) -> str:
+    """Return the load in words, without what the answer sweeps over."""
+    along = [question.along[0]] if question.along else []
+    swept = ["load.force", *along] if question.forces or along else []
+    return question.wanted.tell(swept)

@@ -1,0 +1,1 @@
+"""Input files: read, checked, and turned into models."""

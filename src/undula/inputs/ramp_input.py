@@ -1,0 +1,36 @@
+"""The input of a series of steps: that of a run, which settles unless the input says otherwise."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from undula.inputs.input import RunInput, read_input
+from undula.inputs.overrides import apply_overrides, read_toml
+
+_SETTLE = 'time.until="settled"'
+
+
+def read_step_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunInput:
+    """Read the input of a series of steps, as `undula.inputs.input.read_input` does for a run.
+
+    Parameters
+    ----------
+    path
+        A TOML file in UTF-8; without one, everything starts from the defaults.
+    overrides
+        Changes such as ``"load.force=80"``, applied in order.
+
+    Returns
+    -------
+    RunInput
+        The checked input. Where neither file nor overrides name ``time.until``, each step runs
+        until it has settled.
+
+    Raises
+    ------
+    InputError
+        As for a run.
+    """
+    given = apply_overrides({} if path is None else read_toml(path), overrides)
+    table = given.get("time", {})
+    chosen = not isinstance(table, Mapping) or "until" in table
+    return read_input(path, overrides if chosen else (_SETTLE, *overrides))

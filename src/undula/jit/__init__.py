@@ -1,0 +1,1 @@
+"""Compilation of kernels by numba, their cache on disk, and checks of the sizes of their arrays."""

@@ -1,0 +1,1 @@
+"""Follower forces and their distribution along the filament."""

@@ -1,0 +1,108 @@
+"""The linked rod as a differential equation with constraints, for solvers of states.
+
+It implements `undula.numerics.continuation.problem.Equations` on top of the compiled residual and
+its exact derivative.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from undula.arrays import Array
+from undula.errors import InputError
+from undula.jit.borrowed import lent
+from undula.jit.compilation import entry
+from undula.models.rod.newton_matrix import exact_derivative
+from undula.models.rod.sizes import belongs
+from undula.models.rod.tables import FramedRod, Rod
+from undula.numerics.integration.system import derivative_half_bandwidth, generator, residual, weigh
+
+
+@entry("y (n), w (n), out (n)", where=lambda system, n: belongs(lent(system), n))
+def balance(system: Any, y: Any, w: Any, out: Any) -> None:
+    """Write the residual R(x) w - f and the constraints to out (n,)."""
+    residual(lent(system), lent(y), lent(w), 1.0, lent(out))
+
+
+@entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(lent(system), n))
+def turning(system: Any, y: Any, out: Any, dragged: Any) -> None:
+    """Write S x and R(x) S x, for the velocity of a unit rate of turning, to out and dragged."""
+    generator(system, y, out)
+    weigh(system, y, out, dragged)
+
+
+@dataclass(frozen=True)
+class RodFlow:
+    """The equations of a linked rod in its vector y (n,) of positions and multipliers."""
+
+    system: Rod
+
+    @property
+    def half_bandwidth(self) -> int:
+        """Half-bandwidth of the matrices."""
+        return derivative_half_bandwidth(type(self.system))
+
+    @property
+    def stride(self) -> int:
+        """Entries of y that belong to a node: its coordinates, then its multipliers."""
+        return int(self.system.stride)
+
+    @cached_property
+    def differential(self) -> Any:
+        """True at positions, False at multipliers, shape (n,)."""
+        entries = np.arange(self.system.joint.size * self.stride)
+        return entries % self.stride < self.system.dimension
+
+    def residual(self, y: Array, w: Array) -> Array:
+        """Return R(x) w - f(x, z) and g(x, z), shape (n,), for velocities w (n,)."""
+        out = np.empty(y.size)
+        balance(self.system, y, w, out)
+        return out
+
+    def parts(self, y: Array, w: Array, turn: float) -> tuple[Array, Array]:
+        """Return bands (n, 2 b + 1) of d residual / dy, plus `turn` R S, and of R."""
+        whole = np.empty((y.size, 2 * self.half_bandwidth + 1))
+        drag, d = np.empty_like(whole), int(self.system.dimension)
+        exact_derivative(self.system, y, w, 1.0, turn, whole)
+        exact_derivative(self.system, y, np.zeros(y.size), 0.0, 0.0, drag)
+        drag.reshape(-1, self.stride, drag.shape[1])[:, d:] = 0.0
+        whole -= drag
+        return whole, drag
+
+    def turning(self, y: Array) -> tuple[Array, Array]:
+        """Return S x and R(x) S x, each of shape (n,)."""
+        out, dragged = np.empty(y.size), np.empty(y.size)
+        turning(self.system, y, out, dragged)
+        return out, dragged
+
+    def mirrored(self, y: Array) -> Array:
+        """Return vectors (..., n) with x reflected, and with it the sense of angles that wind.
+
+        A first director that stands on the mirror at the clamp becomes the opposite of its image.
+        """
+        signs = np.ones(self.stride)
+        signs[0] = -1.0
+        signs[self.system.dimension + 1 :] = -1.0
+        if isinstance(self.system, FramedRod):
+            if self.system.natural[:, 1].any() or self.system.tip[0] != 0.0:
+                raise InputError(
+                    "a rod that is curved about its second director is no mirror image of itself;"
+                    " give it natural curvature about the first one alone"
+                )
+            signs[self.system.dimension + 1] = 1.0
+        return np.asarray(y * np.tile(signs, self.system.joint.size))
+
+    def displacements(self, y: Array) -> Array:
+        """Return an orthonormal basis (n, k) of small displacements that keep rigid lengths."""
+        moves, d, m = self.differential, int(self.system.dimension), self.stride
+        if self.system.extensible:
+            return np.eye(y.size)[:, moves]
+        links = np.diff(y.reshape(-1, m)[:, :d], axis=0, prepend=0.0)
+        count = links.shape[0]
+        across = np.linalg.svd(links[:, None, :])[2][:, 1:, :]
+        # What turns a link moves all nodes from its outer end on.
+        raw = np.zeros((count, m, count, d - 1))
+        raw[:, :d] = np.tri(count)[:, None, :, None] * across.transpose(2, 0, 1)
+        return np.asarray(np.linalg.qr(raw.reshape(y.size, -1))[0])

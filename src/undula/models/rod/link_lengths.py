@@ -1,0 +1,60 @@
+"""Lengths that the links of a rod have: exact ones, or those at which stretching meets tension."""
+
+from typing import Any
+
+import numpy as np
+
+from undula.arrays import Array, Links, State
+from undula.errors import InputError
+from undula.models.rod.tables import PlanarRod, SpatialRod
+from undula.models.rod.velocity import rate_of_change
+from undula.numerics.integration.system import RATES
+
+
+def admissible(system: Any, x: State) -> State:
+    """Return the shape of x with the lengths that links of a rod with these tables have to have."""
+    count, dimension = system.joint.size, system.dimension
+    links = np.diff(np.reshape(x, (count, dimension)), axis=0, prepend=0.0)
+    tangents = links / np.linalg.norm(links, axis=1, keepdims=True)
+    stretch = np.ones(count)
+    if system.extensible:
+        stretch += _rigid_tension(system, tangents) / system.tensile
+    return np.asarray(np.cumsum(stretch[:, None] * tangents * system.link, axis=0).ravel())
+
+
+def straight(system: Any) -> State:
+    """Return the straight state along the axis, an equilibrium; extensible links are short.
+
+    Raises
+    ------
+    InputError
+        The load is as large as the stiffness of extensible links.
+    """
+    count: int = system.joint.size
+    carried = np.cumsum((system.head + np.append(system.foot[1:], 0.0))[::-1])[::-1]
+    if not carried.max() < system.tensile:
+        raise InputError(
+            f"tensile_stiffness = {system.tensile:g} does not exceed the force of"
+            f" {carried.max():g} that links bear, which would push them to nothing; give a larger"
+            " tensile_stiffness, or a smaller force"
+        )
+    x = np.zeros((count, system.dimension))
+    x[:, -1] = np.arange(1, count + 1) / count
+    x[:, -1] -= np.cumsum(system.link * carried / system.tensile)
+    return x.ravel()
+
+
+def _rigid_tension(system: Any, tangents: Array) -> Links:
+    """Return the tensions (N,) that rigid links with these tangents would have."""
+    count, dimension = tangents.shape
+    rigid = (PlanarRod if dimension == 2 else SpatialRod)(*system)
+    unknowns = np.zeros((count, dimension + 1))
+    unknowns[:, :-1] = np.cumsum(tangents * rigid.link, axis=0)
+    flat = unknowns.ravel()
+    rate_of_change(rigid, flat, np.zeros(flat.size + RATES))
+    before = np.vstack([np.eye(dimension)[-1], tangents[:-1]])
+    cosine = np.clip(np.sum(before * tangents, axis=1), -1.0, 1.0)
+    angle = np.arccos(cosine)
+    shortfall = rigid.joint * (1.0 - cosine) / np.sinc(angle / np.pi)
+    shortfall[:-1] += shortfall[1:]
+    return np.asarray(flat.reshape(unknowns.shape)[:, -1] + shortfall / rigid.link)

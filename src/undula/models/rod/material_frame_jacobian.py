@@ -1,0 +1,180 @@
+"""The exact derivative of the residual of a framed rod (see `undula.models.rod.material_frame`).
+
+A joint's forces, its turning moment and the director that it carries on depend on ten numbers.
+Their derivative by each is taken by a complex step, which has no step error; functions of the
+angle between the links, or of the twist, get the imaginary parts that their own slopes give them.
+The director of the first link is no unknown but a function of that link's tangent.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from undula.jit.compilation import kernel, overwrite
+from undula.models.rod.jacobian import derivative_kernel
+from undula.models.rod.joint import stiffening_curvature
+from undula.models.rod.material_frame import (
+    JOINT,
+    director_above,
+    first_director,
+    joint_at,
+    joint_cosine,
+    joint_slopes,
+    of_cosine,
+    transport,
+    twist_of,
+)
+from undula.models.rod.residual import tangents_kernel
+from undula.models.rod.tables import FramedRod
+
+_HALF = FramedRod.half_bandwidth
+_STEP = 1e-30
+_tangents = tangents_kernel(FramedRod)
+
+
+@kernel
+def _link_blocks(system: Any, y: Any, t: Any, length: Any, blocks: Any) -> None:  # noqa: ARG001
+    """Write dq_i / de_{i-1+s} without the joints to blocks[i, s]."""
+    blocks[:] = 0.0
+    for i in range(t.shape[0]):
+        for a in range(3):
+            blocks[i, 1, a, a] = -y[8 * i + 3] / system.link
+
+
+_without_joints = derivative_kernel(FramedRod, _link_blocks)
+
+
+@kernel
+def transport_derivative(system: Any, x: Any, inverse: Any, j: Any, out: Any) -> None:
+    """Write the derivative of the director above a joint by x (10,) to out (3, 10)."""
+    cosine, sine = twist_of(system, x, j)
+    soft = system.compliance * system.link if j > 0 else 0.0
+    z, moved = np.empty(JOINT, np.complex128), np.empty(3, np.complex128)
+    for k in range(JOINT):
+        overwrite(z, x)
+        z[k] += complex(0.0, _STEP)
+        slant = -inverse * inverse * joint_cosine(z).imag
+        turn = soft * z[9].imag
+        twist = complex(cosine, -sine * turn), complex(sine, cosine * turn)
+        transport(z, complex(inverse, slant), twist, moved)
+        for a in range(3):
+            out[a, k] = moved[a].imag / _STEP
+
+
+@kernel
+def slopes_derivative(system: Any, x: Any, of_c: Any, j: Any, out: Any) -> None:
+    """Write the derivative of a joint's slopes and turning moment by x (10,) to out (7, 10)."""
+    z, found = np.empty(JOINT, np.complex128), np.empty(7, np.complex128)
+    g, slope, inverse = of_c
+    curvature = stiffening_curvature(joint_cosine(x))
+    for k in range(JOINT):
+        overwrite(z, x)
+        z[k] += complex(0.0, _STEP)
+        step = joint_cosine(z).imag
+        stiff = complex(g, slope * step), complex(slope, curvature * step)
+        slant = complex(inverse, -inverse * inverse * step)
+        joint_slopes(system, z, (*stiff, slant), j, found)
+        for a in range(7):
+            out[a, k] = found[a].imag / _STEP
+
+
+@kernel
+def first_folded(by_joint: Any, first: Any, at: Any) -> None:
+    """Turn derivatives by the first link's director into such by its tangent, from x[at] on."""
+    for a in range(by_joint.shape[0]):
+        for k in range(3):
+            for b in range(3):
+                by_joint[a, at + k] += by_joint[a, 6 + b] * first[b, 3 + k]
+        by_joint[a, 6:9] = 0.0
+
+
+@kernel
+def by_nodes(by_joint: Any, j: Any, director: Any, h: Any, out: Any) -> None:
+    """Turn derivatives (k, 10) of joint j into such by the 24 numbers of nodes j - 2 to j.
+
+    The director belongs to the given one of these nodes, the first with 0.
+    """
+    out[:] = 0.0
+    for a in range(by_joint.shape[0]):
+        for k in range(3):
+            if j > 0:
+                out[a, 8 + k] += by_joint[a, k] / h
+                out[a, k] -= by_joint[a, k] / h
+            out[a, 16 + k] += by_joint[a, 3 + k] / h
+            out[a, 8 + k] -= by_joint[a, 3 + k] / h
+            out[a, 8 * director + 4 + k] += by_joint[a, 6 + k]
+        out[a, 15 if j > 0 else 23] += by_joint[a, 9]
+
+
+@kernel
+def add_row(band: Any, row: Any, j: Any, scale: Any, values: Any) -> None:
+    """Add scale * values (24,), which belong to nodes j - 2 to j, to a row of the matrix."""
+    start = 8 * (j - 2)
+    for k in range(24):
+        if values[k] != 0.0 and start + k >= 0:
+            band[row, _HALF + start + k - row] += scale * values[k]
+
+
+@kernel
+def add_last_load(system: Any, y: Any, t: Any, c: Any, band: Any) -> None:
+    """Add what the load of the last link has beyond one along its tangent."""
+    n, h = t.shape[0], system.link
+    on_a, on_b, on_t = system.tip[0], system.tip[1], system.tip[2] - 1.0
+    for node in range(n - 2, n):
+        load = c * (system.head[n - 1] if node == n - 1 else system.foot[n - 1])
+        at = 8 * (n - 1 - node) + _HALF
+        for k in range(3):
+            p, q, row = (k + 1) % 3, (k + 2) % 3, 8 * node + k
+            by_t = (k, on_t), (p, on_b * y[8 * n - 4 + q]), (q, -on_b * y[8 * n - 4 + p])
+            by_a = (k, on_a), (p, -on_b * t[n - 1, q]), (q, on_b * t[n - 1, p])
+            for b, value in by_t:
+                band[row, at + b - k] += load * value / h
+                band[row, at - 8 + b - k] -= load * value / h
+            for b, value in by_a:
+                band[row, at + 4 + b - k] += load * value
+
+
+@kernel
+def framed_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:  # noqa: ARG001
+    """Write the derivative of the residual to band (n, 2 b + 1); there is no turning."""
+    n, h = system.joint.shape[0], system.link
+    t, length, x, moved = np.empty((n, 3)), np.empty(n), np.empty(JOINT), np.empty(3)
+    first, carried, found = np.empty((3, JOINT)), np.empty((3, JOINT)), np.empty((7, JOINT))
+    director, by_carried, by_found = np.empty(3), np.empty((3, 24)), np.empty((7, 24))
+    _tangents(system, y, t, length)
+    _without_joints(system, y, w, c, 0.0, band)
+    add_last_load(system, y, t, c, band)
+    for j in range(n):
+        joint_at(y, t, j, x)
+        first_director(j, director, x)
+        of_c = of_cosine(joint_cosine(x))
+        transport(x, of_c[2], twist_of(system, x, j), moved)
+        transport_derivative(system, x, of_c[2], j, carried)
+        director_above(y, moved, j, x)
+        slopes_derivative(system, x, of_c, j, found)
+        if j == 0:
+            overwrite(director, moved)
+            for a in range(3):
+                overwrite(first[a], carried[a])
+            first_folded(found, first, 3)
+        elif j == 1:
+            first_folded(carried, first, 0)
+        by_nodes(found, j, 1, h, by_found)
+        for k in range(3):
+            for a, node in ((3 + k, j), (k, j - 1)):
+                if node >= 0:
+                    add_row(band, 8 * node + k, j, c / h, by_found[a])
+                if node > 0:
+                    add_row(band, 8 * (node - 1) + k, j, -c / h, by_found[a])
+        if j > 0:
+            by_nodes(carried, j, 0, h, by_carried)
+            for k in range(3):
+                band[8 * (j - 1) + 4 + k, _HALF] += 1.0
+                add_row(band, 8 * (j - 1) + 4 + k, j, -1.0, by_carried[k])
+            add_row(band, 8 * j - 1, j, -1.0, by_found[6])
+            band[8 * j - 1, _HALF] -= 1.0
+            band[8 * j - 1, _HALF + 8] += 1.0
+    for k in range(3):
+        band[8 * n - 4 + k, _HALF] = 1.0
+        band[8 * n - 4 + k, _HALF - 8] = -1.0
+    band[8 * n - 1, _HALF] = -1.0

@@ -1,0 +1,187 @@
+"""Velocity, multipliers and energy of the linked rod at given positions.
+
+Rigid links: the multipliers follow from t_i . (v_i - v_{i-1}) = 0, a tridiagonal system, since
+
+    v_i = M_i (f_i - T_i t_i + T_{i+1} t_{i+1}),    M_i = [I + (gamma - 1) m m] / w_i.
+
+Extensible links: each follows from the stretch of its link.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from undula.jit.compilation import entry, kernel, overwrite
+from undula.models.rod.joint import joint_energy, stiffening
+from undula.models.rod.residual import cosine_kernel, mean_tangent_kernel, tangents_kernel
+from undula.models.rod.sizes import belongs
+from undula.models.rod.tables import OTHER_JOINTS, RODS, FramedRod, WindingRod
+from undula.models.rod.tridiagonal import solve_tridiagonal
+from undula.models.rod.twist import find_frames, framed_energy
+from undula.models.rod.unwrapped import follow_angles, winding_energy
+from undula.numerics.integration.system import RATES, generic, implements, rates, residual
+
+
+@generic
+def find_multipliers(system: Any, y: Any) -> Any:
+    """Overwrite the multipliers in y (n,) by those that belong to its positions."""
+
+
+@generic
+def find_velocity(system: Any, y: Any, v: Any) -> Any:
+    """Write the velocity at positions and multipliers y (n,) to v (n,)."""
+
+
+@generic
+def elastic_energy(system: Any, y: Any) -> Any:
+    """Return the energies of bending and of stretching at y (n,)."""
+    return 0.0, 0.0
+
+
+def _register(rod: Any) -> None:
+    d, m, extensible = rod.dimension, rod.stride, rod.extensible
+    tangents, cosine, mean_tangent = tangents_kernel(rod), cosine_kernel(d), mean_tangent_kernel(d)
+
+    @implements(find_velocity, rod)
+    def rod_velocity(system: Any, y: Any, v: Any) -> None:
+        n = system.joint.shape[0]
+        t, length, mean, force = np.empty((n, d)), np.empty(n), np.empty(d), np.empty(n * m)
+        tangents(system, y, t, length)
+        residual(system, y, np.zeros(n * m), -1.0, force)
+        for i in range(n):
+            mean_tangent(t, i, mean)
+            along = 0.0
+            for a in range(d):
+                along += mean[a] * force[m * i + a]
+            along *= system.lag / (1.0 - system.lag)  # gamma - 1
+            for a in range(d):
+                v[m * i + a] = (force[m * i + a] + along * mean[a]) / system.weight[i]
+            for k in range(m * i + d, m * i + m):
+                v[k] = 0.0
+
+    @kernel
+    def mobility(system: Any, t: Any, mean: Any, p: Any, q: Any, i: Any) -> Any:
+        """Return t_p . M_i t_q, with m of node i in `mean`."""
+        straight = first = second = 0.0
+        for a in range(d):
+            straight += t[p, a] * t[q, a]
+            first += t[p, a] * mean[a]
+            second += t[q, a] * mean[a]
+        anisotropy = system.lag / (1.0 - system.lag)
+        return (straight + anisotropy * first * second) / system.weight[i]
+
+    @kernel
+    def rigid_multipliers(system: Any, y: Any) -> None:
+        n = system.joint.shape[0]
+        t, length, mean, v = np.empty((n, d)), np.empty(n), np.empty(d), np.empty(n * m)
+        lower, diagonal, upper, tension = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+        tangents(system, y, t, length)
+        for i in range(n):
+            y[m * i + d] = 0.0
+        rod_velocity_compiled(system, y, v)
+        for i in range(n):
+            mean_tangent(t, i, mean)
+            diagonal[i] += mobility(system, t, mean, i, i, i)
+            if i + 1 < n:
+                diagonal[i + 1] += mobility(system, t, mean, i + 1, i + 1, i)
+                upper[i] = lower[i + 1] = -mobility(system, t, mean, i, i + 1, i)
+            for a in range(d):
+                previous = v[m * (i - 1) + a] if i > 0 else 0.0
+                tension[i] += t[i, a] * (v[m * i + a] - previous)
+        solve_tridiagonal(lower, diagonal, upper, tension)
+        for i in range(n):
+            y[m * i + d] = tension[i]
+
+    @kernel
+    def extensible_multipliers(system: Any, y: Any) -> None:
+        n = system.joint.shape[0]
+        t, length = np.empty((n, d)), np.empty(n)
+        tangents(system, y, t, length)
+        for i in range(n):
+            shortfall = 0.0
+            for j in range(i, min(i + 2, n)):
+                c = cosine(t, j)
+                shortfall += system.joint[j] * stiffening(c) * (1.0 - c)
+            tension = system.tensile * (length[i] / system.link - 1.0)
+            y[m * i + d] = tension - shortfall / length[i]
+
+    @kernel
+    def winding_multipliers(system: Any, y: Any) -> None:
+        follow_angles(system, y)
+        rigid_multipliers(system, y)
+
+    @kernel
+    def framed_multipliers(system: Any, y: Any) -> None:
+        find_frames(system, y)
+        rigid_multipliers(system, y)
+
+    rod_velocity_compiled = kernel(rod_velocity)
+    compiled = extensible_multipliers if extensible else rigid_multipliers
+    if rod is WindingRod:
+        compiled = winding_multipliers
+    if rod is FramedRod:
+        compiled = framed_multipliers
+
+    @implements(find_multipliers, rod)
+    def rod_multipliers(system: Any, y: Any) -> None:
+        compiled(system, y)
+
+
+def _register_energy(rod: Any) -> None:
+    d, extensible = rod.dimension, rod.extensible
+    tangents = tangents_kernel(rod)
+
+    @implements(elastic_energy, rod)
+    def rod_energy(system: Any, y: Any) -> Any:
+        n = system.joint.shape[0]
+        t, length = np.empty((n, d)), np.empty(n)
+        tangents(system, y, t, length)
+        bending = stretching = 0.0
+        for i in range(n):
+            chord = 0.0  # |t_i - t_{i-1}| = 2 sin(psi / 2), exact for small angles too
+            for a in range(d):
+                previous = t[i - 1, a] if i > 0 else (1.0 if a == d - 1 else 0.0)
+                chord += (t[i, a] - previous) ** 2
+            bending += system.joint[i] * joint_energy(chord)
+            if extensible:
+                strain = length[i] / system.link - 1.0
+                stretching += 0.5 * system.tensile * system.link * strain * strain
+        return bending, stretching
+
+
+for _rod in RODS:
+    _register(_rod)
+    if _rod not in OTHER_JOINTS:
+        _register_energy(_rod)
+implements(elastic_energy, WindingRod)(winding_energy)
+implements(elastic_energy, FramedRod)(framed_energy)
+
+
+@entry(f"y (n), v (n + {RATES})", where=lambda system, n: belongs(system, n))
+def rate_of_change(system: Any, y: Any, v: Any) -> None:
+    """Find the multipliers (written to y) and all rates (to v, n + RATES) at the positions in y."""
+    n = y.shape[0]
+    find_multipliers(system, y)
+    find_velocity(system, y, v[:n])
+    rates(system, y, v[:n], v[n:])
+
+
+@entry(
+    "states (m, n), out (m, q)",
+    where=lambda system, n, q: belongs(system, n) and (q == 2 or q == 4),
+)
+def observe(system: Any, states: Any, out: Any) -> None:
+    """Write energy of bending and of stretching, active power and dissipation to out (m, 4).
+
+    Energies alone, which take no solving for velocities, to out (m, 2). `states` (m, n) holds
+    positions and multipliers; the multipliers are found anew.
+    """
+    y, v, found = np.empty(states.shape[1]), np.empty(states.shape[1]), np.empty(3)
+    for k in range(states.shape[0]):
+        overwrite(y, states[k])
+        out[k, 0], out[k, 1] = elastic_energy(system, y)
+        if out.shape[1] > 2:
+            find_multipliers(system, y)
+            find_velocity(system, y, v)
+            rates(system, y, v, found)
+            out[k, 2], out[k, 3] = found[1], found[2]

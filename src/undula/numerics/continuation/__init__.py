@@ -1,0 +1,1 @@
+"""Newton's method and pseudo-arclength continuation."""

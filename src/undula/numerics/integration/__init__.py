@@ -1,0 +1,1 @@
+"""Adaptive stiff integration of differential-algebraic systems."""

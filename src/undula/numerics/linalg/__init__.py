@@ -1,0 +1,1 @@
+"""Banded and bordered linear systems, matrix pencils and their critical parameters."""

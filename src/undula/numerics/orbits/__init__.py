@@ -1,0 +1,1 @@
+"""Periodic orbits by collocation and shooting, with Floquet multipliers."""

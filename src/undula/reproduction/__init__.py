@@ -1,0 +1,1 @@
+"""The paper reproduced: its statements, computed and judged."""

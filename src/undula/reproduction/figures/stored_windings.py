@@ -1,0 +1,79 @@
+"""How stored runs wind about the axis."""
+
+import json
+from collections.abc import Mapping
+from string import ascii_lowercase
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from undula.analysis.observables.shapes import tip_height
+from undula.arrays import Array
+from undula.errors import is_number
+from undula.views.run.reading import read_scene
+from undula.views.run.scene import Scene
+from undula.views.run.winding import Winding, winding_figure
+
+#: Beats of the tip's height: of which curves are drawn, and of which shapes.
+_CURVES, _SHAPES = 24.0, 5.3
+#: Below this [L] the tip keeps its height, and its rises are not the beat.
+_LEVEL = 1e-3
+
+
+def windings(*runs: xr.Dataset) -> Figure:
+    """Draw runs side by side: shapes, the angle of the tip about the axis and its height.
+
+    Parameters
+    ----------
+    *runs : xarray.Dataset
+        Stored runs, at least one, as `load_result` gives them.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        As `winding_figure` draws it: the last beats of each run.
+
+    Raises
+    ------
+    InputError
+        There is no run, or one has too few samples or lacks a variable.
+    """
+    return winding_figure(
+        [_winding(run, which) for run, which in zip(runs, ascii_lowercase, strict=False)]
+    )
+
+
+def _winding(run: xr.Dataset, which: str) -> Winding:
+    scene, summary = read_scene(run), json.loads(run.attrs["summary"])
+    shown = _finest(scene)
+    rate = _rate(shown, summary)
+    beat = shown.duration if rate is None else 1.0 / rate
+    late = shown.times >= shown.end - _CURVES * beat
+    title = f"({which})  $F$ = {float(summary['force']):g}: {scene.verdict}"
+    length = min(_SHAPES * beat, shown.duration)
+    return Winding(title, shown.times[late], shown.nodes[late], length)
+
+
+def _finest(scene: Scene) -> Scene:
+    """Return the run itself where that shows its single cycles, otherwise its close-up."""
+    return scene if scene.interpolable else scene.detail
+
+
+def _rate(scene: Scene, summary: Mapping[str, Any]) -> float | None:
+    """Return the rises of the tip per T, or the frequency of a motion that keeps its height."""
+    late = scene.times >= 0.5 * (scene.start + scene.end)
+    times, heights = scene.times[late], tip_height(scene.nodes[late])
+    if float(np.ptp(heights)) >= _LEVEL:
+        return _strongest(times, heights)
+    known = summary.get("frequency")
+    return abs(float(known)) if is_number(known) and known else None
+
+
+def _strongest(times: Array, values: Array) -> float:
+    """Return the frequency of the strongest line of evenly sampled values [cycles per T]."""
+    strength = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size)))
+    rates = np.fft.rfftfreq(values.size, float(times[1] - times[0]))
+    # A line of no cycle in the whole time is no beat.
+    return float(rates[1 + np.argmax(strength[1:])])

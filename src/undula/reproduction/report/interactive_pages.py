@@ -1,0 +1,46 @@
+"""Pages for the mouse inside of the report: packed, and the library that all share only once."""
+
+import base64
+import gzip
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from undula.errors import InputError
+from undula.reproduction.claims.catalogue import Item
+from undula.views.sweep.page import plotting_library
+
+#: Stands in a page for the library, until it is opened.
+_MARK = "/*the plotting library*/"
+
+
+def packed_pages(item: Item, answers: Mapping[str, Any]) -> dict[str, str]:
+    """Return the pages of an item's figures by the figures' names, packed without their library.
+
+    Raises
+    ------
+    InputError
+        The file of a page is gone.
+    """
+    pages = {}
+    for figure in item.figures:
+        if figure.page is None or not figure.asks_for_page <= answers.keys():
+            continue
+        folders = {name: answer.folder for name, answer in answers.items()}
+        path = Path(figure.page.format_map(folders))
+        try:
+            page = path.read_text("utf-8")
+        except OSError as error:
+            raise InputError(f"{path} is gone; run the same command with --fresh") from error
+        pages[figure.name] = _packed(page.replace(plotting_library(), _MARK))
+    return pages
+
+
+def packed_library() -> str:
+    """Return the library of all pages, packed."""
+    return _packed(plotting_library())
+
+
+def _packed(text: str) -> str:
+    """Return a text compressed, the same at any time, in letters."""
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode("ascii")

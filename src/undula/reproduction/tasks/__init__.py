@@ -1,0 +1,1 @@
+"""The commands that the statements rest on, as tasks."""

@@ -1,0 +1,1 @@
+"""Names under which results are stored."""

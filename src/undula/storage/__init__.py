@@ -1,0 +1,1 @@
+"""Result files: written whole, sealed, and checked when they are read."""

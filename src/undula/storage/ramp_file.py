@@ -1,0 +1,222 @@
+"""The steps of a series as a result file, to be drawn and to be gone on with."""
+
+import json
+import platform
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import Field, dataclass, fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from undula.analysis.observables.shapes import Range
+from undula.analysis.ramps.ramp import Course, Step
+from undula.errors import InputError
+from undula.models.model import Model
+from undula.storage.result_kinds import Kind
+from undula.storage.run_file import read_result, write_result
+
+STEPS = Kind("steps 1", "undula step")
+
+_LIBRARIES = ("undula", "numpy", "numba")
+_ATTRIBUTES = ("input", "options", "versions", "parameter")
+_BOUNDS = tuple(field.name for field in fields(Range))
+_SHAPED = {
+    "nodes": ("step", "node", "axis"),
+    "shape_times": ("step", "shape"),
+    "shapes": ("step", "shape", "node", "axis"),
+}
+_QUANTITIES = {
+    "frequency": "frequency",
+    "rotation_frequency": "frequency",
+    "shape_frequency": "frequency",
+    "bending_energy": "energy",
+    "tip_radius": "length",
+    "tip_height": "length",
+    "time": "time",
+    "nodes": "length",
+    "shape_times": "time",
+    "shapes": "length",
+}
+
+
+@dataclass(frozen=True)
+class Series:
+    """Everything that determines a series of steps.
+
+    Attributes
+    ----------
+    input
+        The complete input in plain JSON types.
+    load
+        Model and load in a few words, without the parameter that is varied.
+    model
+        The model that the input describes.
+    course
+        The values of the parameter, in order.
+    """
+
+    input: Mapping[str, Any]
+    load: str
+    model: Model
+    course: Course
+
+
+def write_steps(path: Path, series: Series, steps: Sequence[Step]) -> None:
+    """Write the steps of a series so far, whole or not at all, in place of any earlier ones.
+
+    Parameters
+    ----------
+    path
+        The file to write; missing folders on the way are made.
+    series
+        What makes the steps.
+    steps
+        One at least.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written or is full. A file that was there before is then left as it
+        was.
+    """
+    write_result(path, dataset_of_steps(series, steps), STEPS, overwrite=True)
+
+
+def load_steps(path: Path | str) -> xr.Dataset:
+    """Read a stored series of steps.
+
+    Parameters
+    ----------
+    path
+        A file written by ``undula step``.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the dims step, shape, node and axis, in memory; docs/output.md lists its content.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, cut short, or not written by ``undula step``; or other
+        software has stored it without something that belongs to it.
+    """
+    stored = read_result(Path(path), STEPS)
+    missing = [name for name in _variables() if name not in stored]
+    missing += [name for name in _ATTRIBUTES if name not in stored.attrs]
+    if missing:
+        raise InputError(
+            f"{path} lacks {', '.join(missing)}; give a file as {STEPS.command} wrote it"
+        )
+    return stored
+
+
+def dataset_of_steps(series: Series, steps: Sequence[Step]) -> xr.Dataset:
+    """Return a series as a dataset with dims step, shape, node and axis."""
+    units = series.model.units.names()
+    variables: dict[str, Any] = {}
+    for field in fields(Step):
+        for name, values in _columns(field, steps):
+            attributes = (
+                {"units": units[_QUANTITIES[field.name]]} if field.name in _QUANTITIES else {}
+            )
+            variables[name] = (_SHAPED.get(name, "step"), values, attributes)
+    links = steps[0].nodes.shape[0] - 1
+    coordinates = {
+        "arclength": ("node", np.linspace(0.0, 1.0, links + 1), {"units": "L"}),
+        "axis": ("axis", np.array(["x", "y", "z"])),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=_attributes(series))
+
+
+def stored_steps(stored: xr.Dataset) -> list[Step]:
+    """Return the steps that a dataset of them holds, bit for bit as they were stored."""
+    count = stored.sizes["step"]
+    columns = {field.name: _read_column(field, stored) for field in fields(Step)}
+    return [Step(**{name: column[k] for name, column in columns.items()}) for k in range(count)]
+
+
+def refuse_another_series(path: Path, stored: xr.Dataset, series: Series) -> None:
+    """Refuse to go on with steps that something else has made.
+
+    Raises
+    ------
+    InputError
+        The input, an option or the version differs: the first that does is named.
+    """
+    found, wanted = stored.attrs, _attributes(series)
+    writer, reader = (json.loads(one["versions"])["undula"] for one in (found, wanted))
+    if writer != reader:
+        raise InputError(
+            f"{path} was written by undula {writer} and cannot be gone on with by undula {reader};"
+            " go on with that version, or start afresh with --overwrite"
+        )
+    for what in ("input", "options"):
+        difference = _difference(json.loads(found[what]), json.loads(wanted[what]))
+        if difference is not None:
+            raise InputError(
+                f"{path} holds steps of another series, {difference}; give another --out, or start"
+                " afresh with --overwrite"
+            )
+
+
+def _attributes(series: Series) -> dict[str, str]:
+    versions = {"python": platform.python_version()} | {one: version(one) for one in _LIBRARIES}
+    return {
+        "input": json.dumps(series.input),
+        "options": json.dumps(_options(series.course)),
+        "versions": json.dumps(versions),
+        "parameter": series.course.parameter,
+        "load": series.load,
+        "units": json.dumps(series.model.units.names()),
+        "undula_format": STEPS.format,
+    }
+
+
+def _options(course: Course) -> dict[str, Any]:
+    """Return a course in plain JSON types, under the names of the options that ask for it."""
+    first, last, count = course.values[0], course.values[-1], len(course.values)
+    # Not all the values: an attribute has to be short.
+    along = f"{course.parameter} from {first!r} to {last!r}, {count} values"
+    return {"along": along, "down": course.back, "kick": course.kick, "seed": course.seed}
+
+
+def _columns(field: Field[Any], steps: Sequence[Step]) -> Iterator[tuple[str, Any]]:
+    """Yield the variables that hold a field of all steps: three of a range, or one."""
+    column = [getattr(step, field.name) for step in steps]
+    if field.type is Range:
+        for bound in _BOUNDS:
+            yield f"{field.name}_{bound}", np.array([getattr(one, bound) for one in column])
+    else:
+        yield field.name, np.array(column)
+
+
+def _variables() -> Iterator[str]:
+    """Yield the names of all variables."""
+    for field in fields(Step):
+        bounds = _BOUNDS if field.type is Range else ()
+        yield from (f"{field.name}_{bound}" for bound in bounds) if bounds else (field.name,)
+
+
+def _read_column(field: Field[Any], stored: xr.Dataset) -> Sequence[Any]:
+    if field.type is Range:
+        bounds = (stored[f"{field.name}_{bound}"].values.tolist() for bound in _BOUNDS)
+        return [Range(*each) for each in zip(*bounds, strict=True)]
+    values = stored[field.name].values
+    return list(values) if field.name in _SHAPED else list(values.tolist())
+
+
+def _difference(found: Mapping[str, Any], wanted: Mapping[str, Any], at: str = "") -> str | None:
+    """Return in words the first key whose values differ; None if there is none."""
+    for key in dict.fromkeys([*wanted, *found]):
+        one, other = found.get(key), wanted.get(key)
+        if isinstance(one, Mapping) and isinstance(other, Mapping):
+            inner = _difference(one, other, f"{at}{key}.")
+            if inner is not None:
+                return inner
+        elif one != other:
+            return f"with {at}{key} = {json.dumps(one)} instead of {json.dumps(other)}"
+    return None

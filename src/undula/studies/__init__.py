@@ -1,1 +1,0 @@
-"""Runs as data: checked input in, result files out."""

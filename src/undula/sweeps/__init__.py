@@ -1,0 +1,1 @@
+"""Sweeps of many runs: points, workers and their store."""

@@ -1,0 +1,64 @@
+"""Where a run is, in words: time reached, length of the step, rate, time still to go."""
+
+from undula.analysis.runs.integrate import Progress
+
+#: A pace is known after so many seconds; what takes a day or more at it says so.
+KNOWN_AFTER, FAR_TOO_LONG = 10.0, 86400.0
+
+
+def part_done(progress: Progress) -> float:
+    """Return the part of the run that is done, at least; a settling run may end sooner."""
+    return min(1.0, progress.time / progress.end)
+
+
+def pace(progress: Progress, first: Progress, *, settling: bool) -> str:
+    """Tell where a run is.
+
+    Parameters
+    ----------
+    progress
+        What the run says of itself.
+    first
+        What it said when it was looked at first: compilation lies before that.
+    settling
+        Whether it ends as soon as it has settled, its end being a limit.
+    """
+    most = "at most " if settling else ""
+    words = f"t = {progress.time:.4g} of {most}{progress.end:.4g} T, step {progress.step:.1e} T"
+    gained, spent = _since(first, progress)
+    if gained <= 0.0 or spent <= 0.0:
+        return words
+    to_go = (progress.end - progress.time) * spent / gained
+    return f"{words}, {gained / spent:.2g} T/s, {most}{duration(to_go)} to go"
+
+
+def far_too_long(progress: Progress, first: Progress, *, settling: bool) -> str:
+    """Return a sentence on work that will take days at its pace; none on other work.
+
+    Parameters are those of `pace`.
+    """
+    gained, spent = _since(first, progress)
+    if spent < KNOWN_AFTER:
+        return ""
+    cure = "Ctrl-C and --budget SECONDS stop it, and keep what there is"
+    if gained <= 0.0:
+        return f"the run does not get on: its steps are of {progress.step:.0e} T; {cure}"
+    to_go = (progress.end - progress.time) * spent / gained
+    if to_go < FAR_TOO_LONG:
+        return ""
+    most = "up to " if settling else ""
+    told = f"at this pace the run takes {most}{duration(to_go)} more, in steps of"
+    return f"{told} {progress.step:.0e} T; {cure}"
+
+
+def _since(first: Progress, progress: Progress) -> tuple[float, float]:
+    """Return the time that was gained since a look [T], and the seconds that it took."""
+    return progress.time - first.time, progress.seconds - first.seconds
+
+
+def duration(seconds: float) -> str:
+    """Return a time span in the unit that suits it, such as ``3.2 s`` or ``12 min``."""
+    for limit, unit, name in ((90.0, 1.0, "s"), (5400.0, 60.0, "min"), (2e5, 3600.0, "h")):
+        if seconds < limit:
+            return f"{seconds / unit:.2g} {name}"
+    return f"{seconds / 86400.0:.2g} days"

@@ -1,0 +1,96 @@
+"""Branches on a diagram: their names and colours, and their stable and unstable parts."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import cycle, pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from undula.analysis.states.branch import Branch
+from undula.analysis.states.periodic_record import Periodic
+from undula.analysis.states.records import Flapping, Spinning
+from undula.arrays import Array
+from undula.views.branches.branch_lines import BranchLine, branch_line
+from undula.views.common import style
+
+_COLOURS = (
+    style.X_COLOUR,
+    style.Y_COLOUR,
+    style.Z_COLOUR,
+    style.ENERGY_COLOUR,
+    style.ACTIVE_COLOUR,
+)
+_NAMES = {Spinning: "spinning", Flapping: "planar flapping", Periodic: "modulated"}
+#: Line styles of stable and unstable parts.
+DASHES: Any = {True: "-", False: (0, (2.6, 1.6))}
+#: Width of both.
+WIDTH = 1.8
+
+
+@dataclass(frozen=True)
+class NamedBranch:
+    """A branch as it is drawn: its name, its colour, and its points."""
+
+    name: str
+    colour: str
+    branch: Branch[Any]
+    line: BranchLine
+
+    @property
+    def stable_throughout(self) -> bool:
+        """Whether no part of it is unstable."""
+        return bool(np.all(self.line.stable)) and all(state.stable for state in self.branch.states)
+
+
+def named_branches(branches: Sequence[Branch[Any]]) -> list[NamedBranch]:
+    """Name branches by the kind of their states, with numbers where that is not enough."""
+    kinds = [type(branch.states[0]) for branch in branches]
+    names = [_NAMES.get(kind, kind.__name__) for kind in kinds]
+    numbers = [names[: place + 1].count(name) for place, name in enumerate(names)]
+    several = Counter(names)
+    return [
+        NamedBranch(f"{name} {number}" if several[name] > 1 else name, colour, branch, line)
+        for name, number, colour, branch, line in zip(
+            names, numbers, cycle(_COLOURS), branches, map(branch_line, branches), strict=False
+        )
+    ]
+
+
+def draw_energy(axes: Axes, drawn: NamedBranch) -> None:
+    """Draw the mean over a cycle, and around it what lies between the least and the greatest."""
+    line = drawn.line
+    # Where the branch folds back a single area would cancel itself.
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(line.values)))) + 1
+    for first, last in pairwise([0, *turns, line.values.size - 1]):
+        part = slice(first, last + 1)
+        look: Any = {"color": drawn.colour, "alpha": 0.16, "lw": 0, "gid": f"{drawn.name}, range"}
+        if np.any(line.low[part] < line.high[part]):
+            axes.fill_between(line.values[part], line.low[part], line.high[part], **look)
+    if line.values.size == 1:
+        axes.vlines(line.values, line.low, line.high, color=drawn.colour, lw=WIDTH)
+    draw_line(axes, drawn, line.mean)
+
+
+def draw_line(axes: Axes, drawn: NamedBranch, heights: Array) -> None:
+    """Draw the stable and unstable parts, and the bifurcations between them."""
+    line = drawn.line
+    changes = np.flatnonzero(line.stable[1:] != line.stable[:-1]) + 1
+    for first, last in pairwise([0, *changes, line.stable.size]):
+        if first == last:
+            continue
+        part, stable = slice(first, last + 1), bool(line.stable[first])
+        look: Any = {"color": drawn.colour, "lw": WIDTH, "dash_capstyle": "butt"}
+        look["gid"] = f"{drawn.name}, {'stable' if stable else 'unstable'}"
+        axes.plot(line.values[part], heights[part], ls=DASHES[stable], **look)
+    if line.values.size == 1:
+        face = drawn.colour if drawn.branch.states[0].stable else "white"
+        look = {"mec": drawn.colour, "mfc": face, "ms": 6.0, "gid": f"{drawn.name}, point"}
+        axes.plot(line.values, heights, "o", **look)
+    look = {"mec": drawn.colour, "mfc": "white", "ms": 6.5, "mew": 1.6, "zorder": 4}
+    look["gid"] = f"{drawn.name}, bifurcations"
+    axes.plot(line.values[line.marks], heights[line.marks], "D", **look)
+    for value in line.values[line.marks]:
+        axes.axvline(value, color=drawn.colour, lw=0.7, alpha=0.5, zorder=1)

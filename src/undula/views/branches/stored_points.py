@@ -1,0 +1,81 @@
+"""From stored runs to points of a diagram: a parameter, a frequency and an energy each."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from undula.analysis.observables.shapes import Range
+from undula.errors import is_number
+from undula.views.common.style import UnitNames
+from undula.views.run.reading import units_of
+
+
+@dataclass(frozen=True)
+class StoredPoint:
+    """The motion that a run ends in, with its parameter.
+
+    Attributes
+    ----------
+    value : float
+        The parameter.
+    frequency : float
+        Cycles per T.
+    energy : Range
+        Bending energy at the end of the run.
+    """
+
+    value: float
+    frequency: float
+    energy: Range
+
+
+def stored_points(
+    runs: Sequence[xr.Dataset], parameter: str, units: UnitNames
+) -> list[StoredPoint]:
+    """Take the points from the runs that have one.
+
+    Parameters
+    ----------
+    runs : sequence of xarray.Dataset
+        Stored runs, as `load_result` gives them.
+    parameter : str
+        Such as "load.force".
+    units : mapping of str to str
+        Names of the diagram's units.
+
+    Returns
+    -------
+    list of StoredPoint
+        Without the runs whose parameter cannot be read, without those that end straight or in a
+        motion without a frequency, and without those in other units.
+    """
+    found = [_point(run, parameter, units) for run in runs]
+    return [point for point in found if point is not None]
+
+
+def _point(run: xr.Dataset, parameter: str, units: UnitNames) -> StoredPoint | None:
+    summary = _mapping(json.loads(run.attrs.get("summary", "{}")))
+    if units_of(summary) != units:
+        return None
+    value = _parameter(_mapping(json.loads(run.attrs.get("input", "{}"))), parameter)
+    energy = _mapping(summary.get("bending_energy"))
+    numbers = (value, summary.get("frequency"), *(energy.get(k) for k in ("min", "max", "mean")))
+    # While it dies away a motion has a frequency, but it is no state.
+    if not all(is_number(number) for number in numbers) or summary.get("verdict") == "straight":
+        return None
+    at, frequency, *bounds = (float(number) for number in numbers if number is not None)
+    return StoredPoint(at, frequency, Range(*bounds))
+
+
+def _parameter(given: Mapping[str, Any], parameter: str) -> Any:
+    """Find a parameter in an input file's tables, or in a model's fields, which hold its load."""
+    table, _, key = parameter.partition(".")
+    inner = _mapping(_mapping(given.get("model")).get(table))
+    return _mapping(given.get(table)).get(key, inner.get(key))
+
+
+def _mapping(value: Any) -> Mapping[str, Any]:
+    return value if isinstance(value, Mapping) else {}

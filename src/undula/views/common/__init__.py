@@ -1,0 +1,1 @@
+"""Style, labels and files that all figures share."""

@@ -1,0 +1,128 @@
+"""The stability of the straight filament under one load: growth, thresholds and leading mode.
+
+The left half is after the figure "Frequency of oscillations versus linear stability analysis" of
+Ling, Guo & Kanso (2018).
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from undula.analysis.linear.results import GrowthCurve, Onset, Spectrum
+from undula.errors import InputError
+from undula.views.common import style
+from undula.views.linear.growth import draw_growth, set_span, start_at_zero
+from undula.views.linear.mode_shapes import draw_mode
+
+# Rows of text above a panel, in parts of its height.
+_LOW, _HIGH = 1.04, 1.13
+
+
+def stability_portrait(
+    onset: Onset,
+    growth: GrowthCurve,
+    spectrum: Spectrum,
+    *,
+    title: str,
+    units: style.UnitNames = style.FILAMENT,
+) -> Figure:
+    """Draw how the straight filament loses its stability, and the mode that leads at one force.
+
+    Parameters
+    ----------
+    onset : Onset
+        The forces to mark.
+    growth : GrowthCurve
+        The leading eigenvalue against the force, without a parameter.
+    spectrum : Spectrum
+        Its leading mode is drawn: over one cycle, or as one curve if it does not oscillate.
+    title : str
+        The line above.
+    units : mapping of str to str
+        Names of the model's units, as `Units.names` gives them; by default a filament's.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        10 by 5.5 inches, not known to pyplot.
+
+    Raises
+    ------
+    InputError
+        If `growth` has a parameter, or the three are not in one time unit.
+    """
+    if growth.parameter is not None:
+        raise InputError(
+            f"growth is over {growth.parameter}: give a curve over the force alone, or use"
+            " growth_figure"
+        )
+    if not onset.paper_time == growth.paper_time == spectrum.paper_time:
+        raise InputError(
+            f"paper_time is {onset.paper_time} in onset, {growth.paper_time} in growth and"
+            f" {spectrum.paper_time} in spectrum: compute all three in one time unit"
+        )
+    with style.figure_style():
+        figure = style.headed_figure(title, paper_time=growth.paper_time)
+        upper, lower = draw_growth(figure, growth, units, left=0.085, right=0.6, top=0.82)
+        marked = [mark.force for mark in _marks(onset)]
+        set_span(upper, np.array([*growth.forces, *marked, spectrum.force]))
+        _draw_marks(upper, lower, onset)
+        _mark_spectrum(upper, lower, spectrum)
+        draw_mode(figure, spectrum)
+    return figure
+
+
+@dataclass(frozen=True)
+class _Mark:
+    """A force to be marked by a vertical line: its name, value, text and look."""
+
+    name: str
+    force: float
+    text: str
+    dashes: str
+
+
+def _marks(onset: Onset) -> list[_Mark]:
+    marks = []
+    if onset.oscillatory_force is not None:
+        text = rf"rings from $F$ = {onset.oscillatory_force:.4g}"
+        marks.append(_Mark("oscillatory force", onset.oscillatory_force, text, "--"))
+    if onset.hopf is not None:
+        unit = style.frequency_unit(paper_time=onset.paper_time)
+        text = rf"Hopf at $F$ = {onset.hopf.force:.4g}, {onset.hopf.frequency:.4g} {unit}"
+        marks.append(_Mark("Hopf force", onset.hopf.force, text, "-"))
+    return marks
+
+
+def _draw_marks(upper: Axes, lower: Axes, onset: Onset) -> None:
+    """Mark the thresholds, with their values in two rows above the panels."""
+    marks = _marks(onset)
+    rightwards = bool(marks) and marks[-1].force < np.mean(upper.get_xlim())
+    # The text that runs over the other line stands above the end of that line.
+    rows = (_HIGH, _LOW) if rightwards and len(marks) > 1 else (_LOW, _HIGH)
+    for mark, row in zip(marks, rows, strict=False):
+        look: Any = {"color": style.INK, "lw": 0.9, "ls": mark.dashes, "gid": mark.name}
+        upper.axvline(mark.force, ymax=row + 0.05, clip_on=False, **look)
+        lower.axvline(mark.force, **look)
+        upper.annotate(
+            mark.text,
+            (mark.force, row),
+            xycoords=upper.get_xaxis_transform(),
+            xytext=(4 if rightwards else -4, 0),
+            textcoords="offset points",
+            ha="left" if rightwards else "right",
+        )
+    if onset.hopf is None:
+        text = rf"no loss of stability up to $F$ = {onset.searched_to:.4g}"
+        upper.text(0.5, _HIGH, text, ha="center", transform=upper.transAxes)
+
+
+def _mark_spectrum(upper: Axes, lower: Axes, spectrum: Spectrum) -> None:
+    look: Any = {"color": style.ENERGY_COLOUR, "ms": 6.5, "gid": "spectrum", "zorder": 5}
+    for axes, value in ((upper, spectrum.rates[0]), (lower, spectrum.frequencies[0])):
+        axes.plot([spectrum.force], [value], "o", **look)
+    start_at_zero(lower)
+    lower.legend(lower.lines[-1:], [rf"mode on the right, $F$ = {spectrum.force:.4g}"], loc="best")

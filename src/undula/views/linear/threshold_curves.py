@@ -1,0 +1,110 @@
+"""Forces at which states gain or lose stability, over a second parameter: several in one panel."""
+
+from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from undula.arrays import Array
+from undula.errors import InputError
+from undula.views.common import style
+from undula.views.common.legends import fitting_legend
+from undula.views.linear.growth import set_span, start_at_zero
+
+# Colours, and markers that tell the curves apart without them.
+_LOOKS = (
+    (style.X_COLOUR, "o"),
+    (style.Y_COLOUR, "s"),
+    (style.Z_COLOUR, "^"),
+    (style.ENERGY_COLOUR, "D"),
+    (style.ACTIVE_COLOUR, "v"),
+)
+# Thresholds that differ by more than this factor have a logarithmic axis.
+_DECADES_FROM = 30.0
+
+
+def threshold_curves(
+    curves: Sequence[tuple[str, Array, Array, Array]],
+    *,
+    parameter: str,
+    title: str,
+    units: style.UnitNames = style.FILAMENT,
+) -> Figure:
+    """Draw forces over a parameter, one line with markers for each kind of threshold.
+
+    Parameters
+    ----------
+    curves : sequence of tuple
+        For each its name, the values of the parameter, the forces, NaN where there is none, and
+        their errors: three arrays of one shape (m,).
+    parameter : str
+        Such as "load.slope".
+    title : str
+        The line above.
+    units : mapping of str to str
+        Names of the models' units, as `Units.names` gives them; by default a filament's.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        10 by 5.5 inches, not known to pyplot. Lines break where there is no force.
+
+    Raises
+    ------
+    InputError
+        There is no curve, or the arrays of one differ in shape.
+    """
+    if not curves:
+        raise InputError("curves is empty: give at least one curve")
+    for curve in curves:
+        _check(*curve)
+    with style.figure_style():
+        figure = style.headed_figure(title, paper_time=False)
+        axes = figure.add_axes((0.09, 0.105, 0.885, 0.745))
+        for (colour, marker), curve in zip(cycle(_LOOKS), curves, strict=False):
+            _draw(axes, *curve, colour, marker)
+        _set_spans(axes, curves)
+        axes.set_xlabel(style.parameter_label(parameter))
+        axes.set_ylabel(style.force_label(units))
+        handles = axes.get_legend_handles_labels()[0]
+        fitting_legend(figure, handles, (0.08, 0.935), handlelength=2.4)
+    return figure
+
+
+def _check(name: str, values: Array, forces: Array, errors: Array) -> None:
+    sizes = [np.size(array) for array in (values, forces, errors)]
+    if len(set(sizes)) > 1:
+        raise InputError(
+            f"the curve {name!r} has {sizes[0]} values, {sizes[1]} thresholds and {sizes[2]}"
+            " errors: give one of each for every value"
+        )
+
+
+def _draw(
+    axes: Axes, name: str, values: Array, forces: Array, errors: Array, colour: str, marker: str
+) -> None:
+    order = np.argsort(values)
+    places, heights, around = (np.asarray(some)[order] for some in (values, forces, errors))
+    known = np.isfinite(heights)
+    label = name if np.any(known) else f"{name}: none found"
+    look: Any = {"color": colour, "lw": 1.6, "ms": 5.0, "gid": name, "label": label}
+    axes.plot(places, heights, marker=marker, **look)
+    known &= np.isfinite(around)
+    low, high = (heights + sign * around for sign in (-1.0, 1.0))
+    axes.vlines(places[known], low[known], high[known], color=colour, gid=f"{name}, error")
+
+
+def _set_spans(axes: Axes, curves: Sequence[tuple[str, Array, Array, Array]]) -> None:
+    places = np.concatenate([values for _, values, _, _ in curves])
+    # Room for half a marker at both ends.
+    margin = 0.015 * float(np.ptp(places))
+    set_span(axes, np.array([places.min() - margin, places.max() + margin]))
+    forces = np.concatenate([forces for _, _, forces, _ in curves])
+    known = forces[np.isfinite(forces)]
+    if known.size and known.max() > _DECADES_FROM * known.min() > 0.0:
+        axes.set_yscale("log")
+    else:
+        start_at_zero(axes)

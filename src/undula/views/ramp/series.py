@@ -1,0 +1,109 @@
+"""A stored series of steps as it is drawn."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from undula.errors import InputError
+from undula.views.common import style
+from undula.views.common.verdict_styles import look_of
+from undula.views.run.scene import Floats
+
+NEEDED = ("value", "direction", "verdict", "bending_energy_min", "bending_energy_max", "shapes")
+
+# Room at both ends of the parameter axis, as a share of it.
+_ENDS = 0.02
+
+
+@dataclass(frozen=True)
+class StepSeries:
+    """A series of steps as the views see it, in the units that it names.
+
+    Attributes
+    ----------
+    load : str
+        Model and load in words.
+    parameter : str
+    units : mapping of str to str
+        Names of units by quantity.
+    values : ndarray of shape (m,)
+        The parameter.
+    up : ndarray of shape (m,)
+        Whether the parameter was going up.
+    verdicts : tuple of str
+    low, high : ndarray of shape (m,)
+        Least and greatest bending energy.
+    shapes : ndarray of shape (m, k, n, 3)
+        Shapes of each step, in the course of time [L].
+    """
+
+    load: str
+    parameter: str
+    units: style.UnitNames
+    values: Floats
+    up: NDArray[np.bool_]
+    verdicts: tuple[str, ...]
+    low: Floats
+    high: Floats
+    shapes: Floats
+
+    @property
+    def there_and_back(self) -> bool:
+        """Whether the series has a way back."""
+        return bool(np.any(self.up != self.up[0]))
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The ends of the parameter axis."""
+        low, high = float(self.values.min()), float(self.values.max())
+        margin = _ENDS * (high - low) or max(0.1 * abs(low), 0.1)
+        return low - margin, high + margin
+
+
+def read_series(datasets: Sequence[xr.Dataset]) -> list[StepSeries]:
+    """Take from stored series what the views draw.
+
+    Raises
+    ------
+    InputError
+        There is none, one lacks a variable, or they are along different parameters.
+    """
+    series = [_read(dataset) for dataset in datasets]
+    parameters = sorted({one.parameter for one in series})
+    if not parameters:
+        raise InputError("datasets is empty: give at least one series of steps")
+    if len(parameters) > 1:
+        raise InputError(
+            f"the series are along {' and '.join(parameters)}: give series along one parameter"
+        )
+    return series
+
+
+def verdict_colours(verdicts: Sequence[str]) -> dict[str, str]:
+    """Give each verdict the colour that it has in every figure, in the order of appearance."""
+    return {verdict: look_of(verdict).colour for verdict in dict.fromkeys(verdicts)}
+
+
+def _read(dataset: xr.Dataset) -> StepSeries:
+    missing = [name for name in NEEDED if name not in dataset]
+    if missing or "parameter" not in dataset.attrs or dataset.sizes["step"] == 0:
+        raise InputError(
+            f"the series lacks {', '.join(missing) or 'steps or its parameter'}: give a result of"
+            " `undula step`"
+        )
+    values, directions, verdicts, low, high, shapes = (dataset[name].values for name in NEEDED)
+    return StepSeries(
+        str(dataset.attrs.get("load", "")),
+        str(dataset.attrs["parameter"]),
+        dict(style.FILAMENT) | json.loads(dataset.attrs.get("units", "{}")),
+        values,
+        directions == "up",
+        tuple(map(str, verdicts)),
+        low,
+        high,
+        shapes,
+    )

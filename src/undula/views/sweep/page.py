@@ -1,0 +1,153 @@
+"""The diagram of a sweep as a page to point at: a single file that needs nothing else."""
+
+import base64
+import html
+import json
+import re
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import to_hex
+
+from undula.analysis.observables.shapes import transverse
+from undula.arrays import Array
+from undula.schema.sweep_axes import axes_of
+from undula.views.common import style
+from undula.views.sweep.axes import Border
+from undula.views.sweep.page_script import FRAME, SCRIPT
+from undula.views.sweep.page_traces import border_traces, dot_traces, layout, plain
+from undula.views.sweep.points import (
+    Dot,
+    Note,
+    diagram_axes,
+    dots_of,
+    heading,
+    kept_shapes,
+    note_at,
+)
+
+# Positions are kept as whole numbers of this part of L: of 16 bits, they reach to 3 L.
+_PER_LENGTH = 10_000
+# Shades of shapes, from the first to the last.
+_SHADES = 24
+# Variables that are no figures of a point.
+_NO_FIGURES = ("status", "shapes", "shape_times")
+
+
+def phase_page(
+    store: xr.Dataset,
+    borders: Sequence[Border] = (),
+    *,
+    contradicting: Sequence[Note] = (),
+    title: str | None = None,
+) -> str:
+    """Return the diagram of a sweep as a page for a browser.
+
+    Pointing at a dot shows all that was found there and, if the sweep has kept shapes, draws them
+    beside; a click keeps them until the next one.
+
+    Parameters
+    ----------
+    store : xarray.Dataset
+        A stored sweep that varies one axis or two; choose values of the others with `sel`.
+    borders : sequence of (str, ndarray, ndarray)
+        As for `phase_diagram`.
+    contradicting : sequence of (mapping of str to float, str)
+        As for `phase_diagram`; the sentences stand among what was found.
+    title : str, optional
+        The line above; by default the load, and the values of axes that do not vary.
+
+    Returns
+    -------
+    str
+        A whole page of HTML with the plotting library in it, some 5 MB; nothing is fetched.
+
+    Raises
+    ------
+    InputError
+        The dataset is no stored sweep, or varies more than two axes.
+    """
+    names, dots = diagram_axes(store), dots_of(store)
+    points = [_point(store, dot, note_at(dot, names, contradicting)) for dot in dots]
+    content = {
+        "traces": [
+            *border_traces(store, names, borders),
+            *dot_traces(store, names, dots, contradicting),
+        ],
+        "layout": layout(store, names, dots),
+        "points": points,
+        "nodes": store.sizes.get("node", 0),
+        "per_length": _PER_LENGTH,
+        "colours": [to_hex(colour) for colour in style.shape_colours(_SHADES)],
+        **_extent(store),
+    }
+    # As JSON has it, but never the end of the script that it stands in.
+    told = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    return FRAME.format(
+        title=html.escape(plain(heading(store) if title is None else title)),
+        library=plotting_library(),
+        content=told,
+        script=SCRIPT,
+    )
+
+
+@cache
+def plotting_library() -> str:
+    """Return the plotting library without the addresses of other machines.
+
+    They belong to maps and to services that this page does not use. Names in its notices stay.
+    """
+    from plotly.offline import get_plotlyjs  # slow to learn, and no figure needs it
+
+    library = re.sub(r"https?://(?!www\.w3\.org/)", "", str(get_plotlyjs()))
+    return library.replace("</script", "<\\/script")
+
+
+def _point(store: xr.Dataset, dot: Dot, note: str | None) -> dict[str, Any]:
+    """Return what a page tells of a dot."""
+    here = store.isel(dict(dot.index))
+    figures = [(name, f"{float(here[name]):.6g}") for name in axes_of(store)]
+    if dot.of > 1:
+        figures.append(("tries", f"{dot.tries} of {dot.of} end so, the first is told"))
+    if note is not None:
+        figures.append(("contradicts", note))
+    for name, value in here.data_vars.items():
+        if value.ndim == 0 and name not in _NO_FIGURES:
+            figures += _figure(str(name), value)
+    point: dict[str, Any] = {"figures": figures}
+    shapes = kept_shapes(store, dot.index) if "shapes" in store and dot.verdict else None
+    if shapes is not None:
+        point |= {"shapes": _packed(shapes), "angle": _plane(shapes)}
+    return point
+
+
+def _figure(name: str, value: xr.DataArray) -> list[tuple[str, str]]:
+    """Return a variable as a line of a table, none where it has no value."""
+    unit = str(value.attrs.get("units", ""))
+    if np.issubdtype(value.dtype, np.number):
+        number = float(value)
+        return [(name, f"{number:.6g} {unit}".rstrip())] if np.isfinite(number) else []
+    return [(name, str(value.item()))] if str(value.item()) else []
+
+
+def _packed(shapes: Array) -> str:
+    whole = np.clip(np.rint(shapes * _PER_LENGTH), -32768, 32767).astype("<i2")
+    return base64.b64encode(whole.tobytes()).decode("ascii")
+
+
+def _plane(shapes: Array) -> float:
+    """Return the angle of the plane that holds most of a motion [rad]."""
+    return round(float(0.5 * np.angle(np.sum(transverse(shapes) ** 2))), 4)
+
+
+def _extent(store: xr.Dataset) -> dict[str, float]:
+    """Return how far shapes reach to the sides and downwards [L]."""
+    if "shapes" not in store:
+        return {"reach": 1.0, "lowest": 0.0}
+    positions = store["shapes"].transpose(..., "axis").values
+    sides = np.hypot(positions[..., 0], positions[..., 1])
+    reach, lowest = np.nanmax(sides, initial=0.3), np.nanmin(positions[..., 2], initial=0.0)
+    return {"reach": round(1.08 * float(reach), 3), "lowest": round(float(lowest), 3)}
