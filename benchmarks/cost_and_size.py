@@ -23,7 +23,7 @@ from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.simulation import Simulation
 from undula.arrays import Array, State
 from undula.numerics.integration import stepper_state as names
-from undula.numerics.integration.stepper_state import Memory
+from undula.numerics.integration.stepper_state import StepperState
 from undula.numerics.integration.time_loop import advance
 
 QUICK = "--quick" in sys.argv
@@ -58,7 +58,7 @@ def finer(motion: str, segments: int) -> tuple[un.Filament, State]:
     return model, model.admissible(np.cumsum(shape, axis=0).ravel())
 
 
-def settled(model: un.Filament, x: State, period: float) -> Memory:
+def settled(model: un.Filament, x: State, period: float) -> StepperState:
     """Return the integrator's memory after some periods in the lab frame."""
     schedule = Schedule(rtol=RTOL)
     memory = Simulation.begin(model, x, schedule).memory
@@ -66,7 +66,7 @@ def settled(model: un.Filament, x: State, period: float) -> Memory:
     return memory
 
 
-def _go(model: un.Filament, memory: Memory, until: float) -> Array:
+def _go(model: un.Filament, memory: StepperState, until: float) -> Array:
     options = Schedule(rtol=RTOL).options(model)._replace(frame=0)
     states = np.empty((1, memory.differences.shape[1]))
     sections = np.empty((0, 1 + states.shape[1]))
@@ -84,7 +84,7 @@ def costs(motion: str) -> list[Cost]:
     best, steps = np.full(len(SIZES), np.inf), np.zeros(len(SIZES))
     for _ in range(REPEATED):
         for k, (model, memory) in enumerate(ready):
-            mine = Memory(*(array.copy() for array in memory))
+            mine = StepperState(*(array.copy() for array in memory))
             end = period * (SETTLING + TIMED)
             begun = time.process_time()
             _go(model, mine, end)
@@ -96,7 +96,7 @@ def costs(motion: str) -> list[Cost]:
     ]
 
 
-def kilobytes(model: un.Filament, memory: Memory) -> float:
+def kilobytes(model: un.Filament, memory: StepperState) -> float:
     """Return what the integrator keeps, model tables and a step's scratch included."""
     kept = [*memory, *(table for table in model.system if isinstance(table, np.ndarray))]
     scratch = (

@@ -206,7 +206,7 @@ def tell_times(points: list[Point], way: Way) -> None:
 def tell_names(points: list[Point], rtol: float) -> None:
     """Print how names and frequencies agree with solved states."""
     forces = [point.force for point in points]
-    records = un.solved_line(un.Filament(SEGMENTS, un.TipLoad(LEAST)), forces)
+    records = un.stability_along_force(un.Filament(SEGMENTS, un.TipLoad(LEAST)), forces)
     borders = thresholds(records, forces)
     print("  thresholds of solved states near " + ", ".join(f"{f:.2f}" for f in sorted(borders)))
     wrong, open_, off = [], [], []
@@ -245,7 +245,7 @@ def tell_diagram(count: int, way: Way) -> None:
             _seconds(*UNDULA, *command)
             for command in (("sweep", str(file), "--out", store), ("plot", store))
         )
-        records = un.load_study(Path(store))
+        records = un.load_sweep(Path(store))
         core = float(records["seconds"].sum())
     told = "" if side == 100 else " (asked are 100 x 100)"
     print(f"diagram of {side} x {side} points{told} on {os.cpu_count()} cores")

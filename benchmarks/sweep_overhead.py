@@ -27,7 +27,7 @@ from undula.analysis.runs.simulation import Simulation
 from undula.inputs.build import build_model, build_schedule, build_start
 from undula.inputs.input import parse_input
 from undula.sweeps.point import points
-from undula.sweeps.store import load_study, open_study
+from undula.sweeps.store import load_sweep, open_study
 from undula.sweeps.sweep import Study, read_study
 from undula.sweeps.work_queue import SAVE_EVERY, SweepWork
 from undula.sweeps.workers import pool
@@ -232,7 +232,7 @@ def report(
     study: Study, bare: float, compared: tuple[float, float], watched: Watched, path: Path
 ) -> None:
     """Print the table of a sweep."""
-    stored = load_study(path)
+    stored = load_sweep(path)
     inside = 1e3 * float(stored["seconds"].mean())
     files = [file.stat().st_size for file in path.rglob("*") if file.is_file()]
     rows: dict[str, Any] = {

@@ -43,7 +43,9 @@ def main(figure: str = "natural_curvature.png", twist: str = "paper") -> None:
         ratios[force] = abs(drift) / beat
         print(f"F = {force:3g}: {run.verdict.name}, {drift:.4g} turns and {beat:.4g} rises per T")
         short = run.motion.late(UNTIL - 24.0 / beat)
-        drawn.append(un.views.Winding(f"$F$ = {force:g}", short.time, short.nodes, 5.3 / beat))
+        drawn.append(
+            un.views.TipAngleSeries(f"$F$ = {force:g}", short.time, short.nodes, 5.3 / beat)
+        )
     un.views.winding_figure(drawn).savefig(figure)
 
     # Once a cycle; a fifth; and hardly at all: once in fifty cycles would be slow.
@@ -55,7 +57,7 @@ def main(figure: str = "natural_curvature.png", twist: str = "paper") -> None:
 
 def rounds(motion) -> float:
     """Return the turns of the tip about the axis per T."""
-    angle = un.observables.winding_angle(motion.nodes)
+    angle = un.observables.azimuth(motion.nodes)
     return (angle[-1] - angle[0]) / (2.0 * np.pi * (motion.time[-1] - motion.time[0]))
 
 

@@ -28,7 +28,7 @@ def main(figure: str = "second_transition.png") -> None:
     flapping = un.follow(un.find_flapping(model), "load.force", 230.0)
     (lost,) = (one for one in spinning.bifurcations if one.loses)
     (gained,) = (one for one in flapping.bifurcations if one.gains)
-    between = un.follow_born(gained, 1.02 * lost.value)
+    between = un.follow_from_bifurcation(gained, 1.02 * lost.value)
 
     print(f"flapping is gained at F = {gained.value:.6g}, {gained.kind}")
     print(f"spinning is lost at   F = {lost.value:.6g}, {lost.kind}")

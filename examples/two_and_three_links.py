@@ -29,7 +29,7 @@ def main(figure: str = "two_and_three_links.png") -> None:
     branches, linear = [], []
     for links in (2, 3):
         model = un.Chain(links, un.TipLoad(1.0))
-        onset = un.critical_force(model)
+        onset = un.onset(model)
         spinning = un.follow_from_onset(model, "spinning", FARTHEST)
         flapping = un.follow_from_onset(model, "flapping", FARTHEST)
         branches += [spinning, flapping]

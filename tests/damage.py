@@ -25,8 +25,8 @@ import xarray as xr
 
 import undula as un
 from small_studies import QUICK, study_of, work_off
-from undula.analysis.maps.stability_boundaries import Borders
-from undula.analysis.maps.stability_intervals import Change, Stretches
+from undula.analysis.maps.stability_boundaries import StabilityBoundaries
+from undula.analysis.maps.stability_intervals import Change, StabilityIntervals
 from undula.app.cli import main
 from undula.errors import InputError
 from undula.reproduction.claims.catalogue import Task
@@ -173,7 +173,7 @@ def make_steps(folder: Path) -> None:
 
 
 def read_steps(folder: Path) -> Any:
-    stored = un.load_steps(folder / "steps.nc")
+    stored = un.load_ramp(folder / "steps.nc")
     return as_bytes(stored), len(stored_steps(stored))
 
 
@@ -197,7 +197,7 @@ def gone_on_with(folder: Path, keep: str = "period") -> Any:
     store = open_study(folder / "s.zarr", study(folder, keep))
     work_off(SweepWork(store), store.study)
     runs = {path.name: path.read_bytes() for path in (store.path / "runs").glob("*.nc")}
-    after = un.load_study(store.path).load()
+    after = un.load_sweep(store.path).load()
     done = (before["status"] == 1).values
     names = [name for name in after if after[name].dims[:2] == before["status"].dims]
     shown = [
@@ -215,7 +215,7 @@ def gone_on_with(folder: Path, keep: str = "period") -> Any:
 
 
 def read_study(folder: Path) -> xr.Dataset:
-    return un.load_study(folder / "s.zarr").load()
+    return un.load_sweep(folder / "s.zarr").load()
 
 
 def gone_on_with_runs(folder: Path) -> Any:
@@ -224,8 +224,10 @@ def gone_on_with_runs(folder: Path) -> Any:
 
 def make_borders(folder: Path) -> None:
     make_study(folder)
-    state = Stretches("spinning", 37.5, ((37.5, 187.2),), 240.0, lost=Change(187.2, 1e-8, 4.1))
-    borders = Borders(None, (float("nan"),), 240.0, ({"spinning": state},))
+    state = StabilityIntervals(
+        "spinning", 37.5, ((37.5, 187.2),), 240.0, lost=Change(187.2, 1e-8, 4.1)
+    )
+    borders = StabilityBoundaries(None, (float("nan"),), 240.0, ({"spinning": state},))
     keep_borders(folder / "s.zarr", read_study(folder), borders)
 
 

@@ -9,17 +9,19 @@ from undula.arrays import Array
 from undula.numerics.orbits.periodic_orbit import Orbit, Search, find_orbit
 from undula.numerics.orbits.radau import radau
 from undula.numerics.orbits.shooting import Shooting
-from undula.numerics.orbits.symmetry import Closure, Rotation
+from undula.numerics.orbits.symmetry import OrbitSymmetry, Rotation
 
-EXACT = Closure()
-TURNING = Closure(rotation=Rotation(turned, turning))
+EXACT = OrbitSymmetry()
+TURNING = OrbitSymmetry(rotation=Rotation(turned, turning))
 
 
 def mirrored(y: Array) -> Array:
     return -y
 
 
-def shooting(equations: Any, intervals: int, closure: Closure = EXACT, stages: int = 3) -> Shooting:
+def shooting(
+    equations: Any, intervals: int, closure: OrbitSymmetry = EXACT, stages: int = 3
+) -> Shooting:
     return Shooting(lambda _: equations, closure, intervals, radau(stages))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from undula.sweeps.point import line, points
-from undula.sweeps.store import StudyStore, load_study, open_study
+from undula.sweeps.store import StudyStore, load_sweep, open_study
 from undula.sweeps.sweep import Study, read_study
 from undula.sweeps.work_queue import Piece, SweepWork
 
@@ -55,7 +55,7 @@ def done(study: Study, path: Path, *, retry_failed: bool = False) -> xr.Dataset:
     """Return a study, done in this process."""
     store = open_study(path, study)
     work_off(SweepWork(store, retry_failed=retry_failed), study)
-    return load_study(path).load()
+    return load_sweep(path).load()
 
 
 def differing(one: xr.Dataset, other: xr.Dataset, but: Sequence[str] = ("seconds",)) -> list[str]:

@@ -8,7 +8,7 @@ import pytest
 from pages import ROOT
 from small_studies import done, study_of
 from undula.analysis.parameters import changed, value_of
-from undula.analysis.solvers.state_kinds import kind_of
+from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.solvers.thresholds import THRESHOLDS
 from undula.app.cli import main
 from undula.inputs.build import build_model
@@ -56,14 +56,14 @@ def _begins(*_: Any, **__: Any) -> NoReturn:
 
 
 def _finds(_: Any, kind: str, **__: Any) -> NoReturn:
-    kind_of(kind)
+    kind_by_name(kind)
     raise BegunError
 
 
 def _follows(model: Any, kind: str, way: Any, **_: Any) -> NoReturn:
     value_of(model, way.parameter)
     if kind != "straight":
-        kind_of(kind)
+        kind_by_name(kind)
     raise BegunError
 
 
@@ -92,7 +92,7 @@ BEGINNINGS = {
     "undula.app.commands.threshold.tell_threshold": _tells,
     "undula.app.commands.threshold.tell_thresholds": _tells,
     "undula.app.commands.sweep.open_study": _begins,
-    "undula.app.commands.sweep.load_study": _begins,
+    "undula.app.commands.sweep.load_sweep": _begins,
     "undula.app.commands.plot_sweep.plot_study": _begins,
     "undula.reproduction.reproduce.jobs_of": _begins,
     "undula.storage.run_file.load_result": _begins,

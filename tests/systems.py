@@ -30,11 +30,12 @@ from undula.numerics.integration.stepper_state import (
     IN_FRAME,
     ORDER,
     PLANNED_ORDER,
-    Memory,
+    StepperState,
     start,
 )
 from undula.numerics.integration.system import (
     RATES,
+    apply_drag,
     constraint_error,
     generator,
     implements,
@@ -42,7 +43,6 @@ from undula.numerics.integration.system import (
     rates,
     residual,
     rotate,
-    weigh,
 )
 from undula.numerics.integration.time_loop import advance
 
@@ -143,7 +143,7 @@ def known_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> N
         spinner_matrix(system, y, c, turn, band)
 
 
-@implements(weigh, Known)
+@implements(apply_drag, Known)
 def known_weigh(system: Any, y: Any, u: Any, out: Any) -> None:
     out[:] = u
     if system.problem == BEAD:
@@ -223,7 +223,7 @@ def begin(
     order: int = 1,
     radius: float = 1.0,
     in_frame: bool = False,
-) -> Memory:
+) -> StepperState:
     """Return the memory of a stepper of this step and order on the exact solution at time 0."""
     past = exact(system, -step * np.arange(order + 1), radius, in_frame)
     memory = start(system, scheme, past[0, :-RATES], np.zeros(past.shape[1]), 0.0, step)
@@ -235,7 +235,7 @@ def begin(
     return memory
 
 
-def pinned(memory: Memory) -> Memory:
+def pinned(memory: StepperState) -> StepperState:
     """Return the memory, made to keep its step and order as long as no step fails.
 
     Too few equal steps have been taken, it thinks, to choose others.
@@ -249,13 +249,13 @@ def always_accepting(told: Options) -> Options:
     return told._replace(error=np.zeros_like(told.error))
 
 
-def copied(memory: Memory) -> Memory:
+def copied(memory: StepperState) -> StepperState:
     """Return an independent copy."""
-    return Memory(*(array.copy() for array in memory))
+    return StepperState(*(array.copy() for array in memory))
 
 
 def follow(
-    system: Known, memory: Memory, told: Options, times: Any, most_steps: int = ALL_STEPS
+    system: Known, memory: StepperState, told: Options, times: Any, most_steps: int = ALL_STEPS
 ) -> tuple[Status, np.ndarray]:
     """Go on to `times`; return how it ended and the rows that were reached."""
     width = memory.differences.shape[1]
@@ -264,7 +264,7 @@ def follow(
     return Status(code), rows[:filled]
 
 
-def sections_of(system: Known, memory: Memory, told: Options, until: float) -> np.ndarray:
+def sections_of(system: Known, memory: StepperState, told: Options, until: float) -> np.ndarray:
     """Go on to a time; return the sections found, time and row each, shape (s, 1 + n + RATES)."""
     width = memory.differences.shape[1]
     found = np.empty((100, 1 + width))

@@ -11,7 +11,7 @@ import pytest
 from refusal import complaint
 from undula.analysis.linear.straight_branch import follow_straight
 from undula.analysis.parameters import changed, value_of
-from undula.analysis.ramps.ramp import Course
+from undula.analysis.ramps.ramp import Ramp
 from undula.analysis.solvers import state_kinds as kinds
 from undula.analysis.solvers.equilibrium import find_equilibrium
 from undula.analysis.solvers.spinning import find_spinning
@@ -213,7 +213,7 @@ def test_the_straight_state_and_its_thresholds_name_the_parameter(
 def test_steps_along_a_parameter_are_runs_by_themselves(
     parameter: str, start: float, end: float
 ) -> None:
-    course = Course(parameter, (start, end))
+    course = Ramp(parameter, (start, end))
     alone = [changed(BODIES["tip"], parameter, value) for value in (start, end)]
     assert course.models(BODIES["tip"]) == alone
 

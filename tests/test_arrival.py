@@ -13,10 +13,17 @@ from refusal import complaint
 from small_studies import done, study_of
 from undula.analysis.observables.shapes import displacement
 from undula.analysis.run_settings import Schedule
-from undula.analysis.runs.early_stop import NEAR, SLOWEST, Arrival, Lookout, motion_of, turned_by
+from undula.analysis.runs.early_stop import (
+    NEAR,
+    SLOWEST,
+    ReachedState,
+    StateDetector,
+    motion_of,
+    turned_by,
+)
 from undula.analysis.runs.integrate import TIGHT
 from undula.analysis.runs.run import Run
-from undula.analysis.runs.settling import Pace
+from undula.analysis.runs.settling import MotionRates
 from undula.analysis.runs.simulation import Simulation
 from undula.analysis.states.relative_equilibrium import Disturbances
 from undula.numerics.integration.system import RATES
@@ -173,12 +180,12 @@ def arrives(spinning: un.Spinning, rate: float, part: float) -> bool:
     mode = around.basis @ vectors[:, np.argmin(abs(around.shift - 1.0 / values - exponent))]
     size = displacement(model.nodes(model.positions(y)))
     mode *= part * size / np.sqrt(np.mean(np.abs(mode) ** 2) * mode.size / model.links)
-    lookout = Lookout(model)
+    lookout = StateDetector(model)
     for look in range(20):
         time = 0.002 * look
         swing = np.exp((rate + 1j * exponent.imag) * time)
         shape = turned_by(model, y + (swing * mode).real, np.array([0.3 * look]))[0]
-        pace = Pace(time, shape_speed=0.1, displacement=1.0, turn_rate=spinning.rate)
+        pace = MotionRates(time, shape_speed=0.1, displacement=1.0, turn_rate=spinning.rate)
         if lookout.arrival([pace] * 3, time, shape) is not None:
             return True
     return False
@@ -201,7 +208,7 @@ def test_what_is_far_away_has_not_arrived(spinning: un.Spinning) -> None:
 
 def test_a_state_that_is_shown_turns_at_its_rate(spinning: un.Spinning) -> None:
     model = spinning.model
-    arrival = Arrival("spinning", 0.5, 0.0, 0.0, spinning.leading_rate, spinning)
+    arrival = ReachedState("spinning", 0.5, 0.0, 0.0, spinning.leading_rate, spinning)
     motion = motion_of(arrival, model, np.zeros(spinning.unknowns.size + RATES))
     assert motion.time[0] == 0.5
     turns = np.ptp(motion.rotation_angle) / (2.0 * np.pi)

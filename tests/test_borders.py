@@ -12,9 +12,13 @@ import undula as un
 from refusal import complaint
 from sweeps import made_up
 from undula.analysis.linear.results import Crossing, Onset
-from undula.analysis.maps.contradictions import disagreements
-from undula.analysis.maps.stability_boundaries import BORDERS, Borders, solved_borders
-from undula.analysis.maps.stability_intervals import Stretches, straight_stretches
+from undula.analysis.maps.contradictions import contradictions
+from undula.analysis.maps.stability_boundaries import (
+    BORDERS,
+    StabilityBoundaries,
+    stability_boundaries,
+)
+from undula.analysis.maps.stability_intervals import StabilityIntervals, straight_stretches
 from undula.analysis.solvers.thresholds import threshold
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning
@@ -26,13 +30,13 @@ FINDS = {"spinning": un.find_spinning, "flapping": un.find_flapping}
 
 
 @cache
-def of_eight() -> Borders:
-    return solved_borders(EIGHT, None, (), 240.0)
+def of_eight() -> StabilityBoundaries:
+    return stability_boundaries(EIGHT, None, (), 240.0)
 
 
 @cache
-def over_position() -> Borders:
-    return solved_borders(LOW, "load.position", (0.4, 1.5, 0.7), 140.0)
+def over_position() -> StabilityBoundaries:
+    return stability_boundaries(LOW, "load.position", (0.4, 1.5, 0.7), 140.0)
 
 
 def force_of(name: str) -> float:
@@ -40,14 +44,14 @@ def force_of(name: str) -> float:
 
 
 def test_the_onset_is_that_of_the_links_as_they_are_and_tends_to_that_of_the_filament() -> None:
-    discrete = un.critical_force(EIGHT, method="discrete").force
+    discrete = un.onset(EIGHT, method="discrete").force
     assert force_of("onset") == pytest.approx(discrete, rel=1e-9)
     # Below the onset no branch has to be followed.
     forces = [
-        float(solved_borders(EIGHT.with_(segments=n), None, (), 30.0).curve("onset")[0][0])
+        float(stability_boundaries(EIGHT.with_(segments=n), None, (), 30.0).curve("onset")[0][0])
         for n in (8, 16, 32)
     ]
-    filament = un.critical_force(EIGHT).force
+    filament = un.onset(EIGHT).force
     limit, error = extrapolated(forces)
     assert filament is not None
     assert abs(limit - filament) < error < 1e-2 * filament
@@ -84,7 +88,7 @@ def test_stretches_reach_from_border_to_border() -> None:
     assert column["straight"].stable == ((0.0, force_of("onset")),)
     assert column["spinning"].stable == ((force_of("onset"), force_of("spinning-lost")),)
     assert column["flapping"].stable == ((force_of("flapping-gained"), force_of("flapping-lost")),)
-    assert column["flapping"].known_to == 240.0
+    assert column["flapping"].searched_to == 240.0
 
 
 def test_a_branch_born_downwards_has_a_fold_below_the_onset() -> None:
@@ -118,7 +122,7 @@ def test_a_filament_that_stays_straight_has_no_borders() -> None:
     pulled = un.Filament(
         segments=8, load=un.TableLoad(20.0, s=(0.0, 0.2, 0.4, 1.0), density=(1.0, 1.0, -0.4, -0.4))
     )
-    borders = solved_borders(pulled, None, (), 300.0)
+    borders = stability_boundaries(pulled, None, (), 300.0)
     for name in BORDERS:
         assert np.isnan(borders.curve(name)[0]).all()
         assert "stable" in str(borders.gap(name, 0))
@@ -126,14 +130,14 @@ def test_a_filament_that_stays_straight_has_no_borders() -> None:
 
 def test_a_confined_filament_has_no_border_of_spinning() -> None:
     # Below the onset no branch has to be followed.
-    borders = solved_borders(EIGHT.with_(confined=True), None, (), 30.0)
+    borders = stability_boundaries(EIGHT.with_(confined=True), None, (), 30.0)
     assert borders.gap("spinning-lost", 0) == "a confined model cannot spin"
     assert borders.columns[0]["flapping"].stable[0][0] == borders.curve("onset")[0][0]
 
 
 def test_progress_counts_the_values() -> None:
     told: list[tuple[int, int]] = []
-    solved_borders(
+    stability_boundaries(
         EIGHT, "model.drag_ratio", (1.5, 2.0), 30.0, progress=lambda *some: told.append(some)
     )
     assert told == [(1, 2), (2, 2)]
@@ -147,11 +151,11 @@ def test_a_straight_state_that_comes_to_rest_again_has_two_stretches() -> None:
 
 @pytest.mark.parametrize("up_to", [0.0, float("inf"), float("nan")])
 def test_forces_of_interest_have_an_end(up_to: float) -> None:
-    assert f"up_to = {up_to}" in complaint(lambda: solved_borders(EIGHT, None, (), up_to))
+    assert f"up_to = {up_to}" in complaint(lambda: stability_boundaries(EIGHT, None, (), up_to))
 
 
 def test_borders_are_over_no_force() -> None:
-    sentence = complaint(lambda: solved_borders(EIGHT, "load.force", (1.0,), 100.0))
+    sentence = complaint(lambda: stability_boundaries(EIGHT, "load.force", (1.0,), 100.0))
     assert "take another parameter" in sentence
 
 
@@ -164,15 +168,15 @@ def test_an_unknown_border_is_refused() -> None:
 FORCES = (20.0, 35.0, 41.0, 100.0, 199.0, 250.0, 400.0)
 
 
-def made_borders(*, fold: float | None = None) -> Borders:
+def made_borders(*, fold: float | None = None) -> StabilityBoundaries:
     """Return borders at 40, spinning stable up to 200, flapping from 180 to 300."""
     begins = 40.0 if fold is None else fold
     column = {
-        "straight": Stretches("straight", 0.0, ((0.0, 40.0),), np.inf),
-        "spinning": Stretches("spinning", begins, ((begins, 200.0),), 350.0),
-        "flapping": Stretches("flapping", 40.0, ((180.0, 300.0),), 350.0),
+        "straight": StabilityIntervals("straight", 0.0, ((0.0, 40.0),), np.inf),
+        "spinning": StabilityIntervals("spinning", begins, ((begins, 200.0),), 350.0),
+        "flapping": StabilityIntervals("flapping", 40.0, ((180.0, 300.0),), 350.0),
     }
-    return Borders(None, (float("nan"),), 400.0, (column,))
+    return StabilityBoundaries(None, (float("nan"),), 400.0, (column,))
 
 
 def right(force: float, _: int = 0) -> str:
@@ -188,7 +192,7 @@ def sweep(**instead: str) -> xr.Dataset:
 
 
 def test_runs_that_end_in_stable_states_contradict_nothing() -> None:
-    assert disagreements(sweep(), made_borders()) == ()
+    assert contradictions(sweep(), made_borders()) == ()
 
 
 @pytest.mark.parametrize(
@@ -204,7 +208,7 @@ def test_runs_that_end_in_stable_states_contradict_nothing() -> None:
 def test_a_run_in_a_state_that_is_not_stable_contradicts(
     instead: dict[str, str], said: str
 ) -> None:
-    (found,) = disagreements(sweep(**instead), made_borders())
+    (found,) = contradictions(sweep(**instead), made_borders())
     ((name, verdict),) = instead.items()
     assert found.at == {"load.force": float(name[1:]), "try": 0.0}
     assert found.verdict == verdict
@@ -215,8 +219,8 @@ def test_a_run_in_a_state_that_is_not_stable_contradicts(
 def test_a_contradiction_next_to_a_border_is_told_as_near() -> None:
     # 41 lies 2.5 per cent above the onset at 40.
     store = sweep(f41="straight")
-    (far,) = disagreements(store, made_borders())
-    (near,) = disagreements(store, made_borders(), near=0.03)
+    (far,) = contradictions(store, made_borders())
+    (near,) = contradictions(store, made_borders(), near=0.03)
     assert (far.near, near.near) == (False, True)
 
 
@@ -233,30 +237,32 @@ def test_a_contradiction_next_to_a_border_is_told_as_near() -> None:
     ],
 )
 def test_what_is_not_known_contradicts_nothing(instead: dict[str, str]) -> None:
-    assert disagreements(sweep(**instead), made_borders()) == ()
+    assert contradictions(sweep(**instead), made_borders()) == ()
 
 
 def test_spinning_between_its_fold_and_the_onset_is_right() -> None:
     store = sweep(f35="spinning")
-    assert len(disagreements(store, made_borders())) == 1
-    assert disagreements(store, made_borders(fold=30.0)) == ()
+    assert len(contradictions(store, made_borders())) == 1
+    assert contradictions(store, made_borders(fold=30.0)) == ()
 
 
 def test_each_column_is_judged_by_its_own_borders() -> None:
     first = made_borders()
     column = first.columns[0]
     later = replace(column["straight"], stable=((0.0, 150.0),))
-    borders = Borders("load.exponent", (1.0, 2.0), 400.0, (column, {**column, "straight": later}))
+    borders = StabilityBoundaries(
+        "load.exponent", (1.0, 2.0), 400.0, (column, {**column, "straight": later})
+    )
     axes = {"load.force": (100.0,), "load.exponent": (1.0, 2.0)}
-    (found,) = disagreements(made_up(axes, lambda *_: "straight"), borders)
+    (found,) = contradictions(made_up(axes, lambda *_: "straight"), borders)
     assert found.at["load.exponent"] == 1.0
 
 
 def test_borders_over_no_axis_of_the_store_are_refused() -> None:
     borders = replace(made_borders(), parameter="load.slope", values=(0.5,))
-    assert "no axis of the store" in complaint(lambda: disagreements(sweep(), borders))
+    assert "no axis of the store" in complaint(lambda: contradictions(sweep(), borders))
     without = made_up({"load.exponent": (1.0, 2.0)}, lambda *_: "straight")
-    assert "load.force" in complaint(lambda: disagreements(without, made_borders()))
+    assert "load.force" in complaint(lambda: contradictions(without, made_borders()))
 
 
 # ---------------------------------------------------------------- kept beside a study

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from refusal import complaint
-from undula.analysis.linear.stability import critical_force
+from undula.analysis.linear.stability import onset
 from undula.analysis.linear.straight_branch import follow_straight
 from undula.analysis.observables.shapes import Range
 from undula.analysis.states.branch import Bifurcation, Branch
@@ -349,14 +349,14 @@ def test_the_straight_state_along_the_force_is_lost_at_the_critical_force(
 ) -> None:
     model = Filament(20, TipLoad(75.0))
     branch = follow_straight(model, "load.force", start, to)
-    onset = critical_force(model).hopf
-    assert onset is not None
+    straight_onset = onset(model).hopf
+    assert straight_onset is not None
     ((force, frequency),) = branch.hopf
     # Both find the same zero of a rate that is known to round-off of the fastest decay.
-    assert force == pytest.approx(onset.force, rel=1e-10)
-    assert frequency == pytest.approx(onset.frequency, rel=1e-10)
+    assert force == pytest.approx(straight_onset.force, rel=1e-10)
+    assert frequency == pytest.approx(straight_onset.frequency, rel=1e-10)
     assert branch.values[[0, -1]] == pytest.approx([start, to], abs=0.0)
-    np.testing.assert_array_equal(branch.rates > 0.0, branch.values > onset.force)
+    np.testing.assert_array_equal(branch.rates > 0.0, branch.values > straight_onset.force)
     assert branch.rates.shape == branch.frequencies.shape == branch.values.shape
 
 
@@ -367,10 +367,10 @@ def test_along_the_position_of_a_load_both_sides_of_the_curve_of_thresholds_are_
     (one, frequency), (other, _) = branch.hopf
     assert 0.6 < one < 0.78 < other < 1.0
     for position, each in branch.hopf:
-        onset = critical_force(model.with_(position=position)).hopf
-        assert onset is not None
-        assert onset.force == pytest.approx(37.0, rel=1e-9)
-        assert onset.frequency == pytest.approx(each, rel=1e-9)
+        straight_onset = onset(model.with_(position=position)).hopf
+        assert straight_onset is not None
+        assert straight_onset.force == pytest.approx(37.0, rel=1e-9)
+        assert straight_onset.frequency == pytest.approx(each, rel=1e-9)
     between = (branch.values > one) & (branch.values < other)
     np.testing.assert_array_equal(branch.rates > 0.0, between)
     at = np.interp(one, branch.values, branch.frequencies)

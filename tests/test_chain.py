@@ -182,7 +182,7 @@ def test_it_has_the_filaments_spectrum_and_onset(load: DensityLoad) -> None:
     filament, other = twins(load, 12)
     found = un.spectrum(filament, count=6, method="discrete").values
     np.testing.assert_allclose(144.0 * un.spectrum(other, count=6).values, found, rtol=1e-10)
-    onset, of_links = un.critical_force(filament, method="discrete"), un.critical_force(other)
+    onset, of_links = un.onset(filament, method="discrete"), un.onset(other)
     assert of_links.force is not None
     assert of_links.frequency is not None
     # Stiffness grows as the fourth power of the links: 2e4 times round-off.

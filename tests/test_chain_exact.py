@@ -21,7 +21,7 @@ every_end = pytest.mark.parametrize(("spring", "inner", "outer"), ENDS)
 
 @cache
 def onset(links: int, *, of_filament: bool = False) -> Onset:
-    return un.critical_force(chain_of(links, of_filament=of_filament), later=0)
+    return un.onset(chain_of(links, of_filament=of_filament), later=0)
 
 
 def chain_of(links: int, *, of_filament: bool = False) -> Chain:
@@ -120,7 +120,7 @@ def test_two_links_have_thresholds_in_closed_form(
     spring: float, inner: float, outer: float
 ) -> None:
     model = Chain(2, TipLoad(1.0), base_spring=spring, bead_drag=(inner, outer))
-    found, ratio = un.critical_force(model), inner / outer
+    found, ratio = un.onset(model), inner / outer
     assert found.hopf is not None
     # A few operations on doubles.
     assert found.hopf.force == pytest.approx(spring + 4.0 + ratio, rel=1e-13)
@@ -177,7 +177,7 @@ LINKS = [20, 40, 80, 160]
 
 
 def converged_onset() -> tuple[float, float]:
-    found = un.critical_force(Filament(40, TipLoad(1.0)), later=0)
+    found = un.onset(Filament(40, TipLoad(1.0)), later=0)
     assert found.force is not None
     assert found.frequency is not None
     return found.force, 2.0 * np.pi * found.frequency
@@ -224,12 +224,12 @@ def test_a_chain_is_judged_link_by_link_without_being_asked_to() -> None:
     assert onset(3).method == "discrete"
     assert un.spectrum(chain_of(3)).method == "discrete"
     assert un.growth_curve(chain_of(3), [1.0]).method == "discrete"
-    assert onset(3) == un.critical_force(chain_of(3), method="discrete", later=0)
+    assert onset(3) == un.onset(chain_of(3), method="discrete", later=0)
 
 
 @pytest.mark.parametrize("method", ["spectral", "modes"])
 def test_the_methods_of_the_continuum_are_refused(method: Method) -> None:
-    sentence = complaint(lambda: un.critical_force(chain_of(3), method=method))
+    sentence = complaint(lambda: un.onset(chain_of(3), method=method))
     assert "no continuous inextensible filament" in sentence
     assert sentence.endswith("use method = 'discrete'")
 
@@ -245,13 +245,13 @@ def test_the_links_of_a_chain_have_no_limit() -> None:
 @pytest.mark.parametrize("option", OPTIONS)
 def test_one_link_has_no_threshold_and_says_so(option: str) -> None:
     model = chain(1, option)
-    found = un.critical_force(model)
+    found = un.onset(model)
     assert found.hopf is None
     assert found.oscillatory_force is None
     assert str(found).startswith("straight and stable at every force up to")
     for kind in ("onset", "spinning-lost", "flapping-gained", "flapping-lost"):
         told = un.threshold(model, kind)
         assert told.value is None
-        assert told.reason == str(un.critical_force(model, later=0))
+        assert told.reason == str(un.onset(model, later=0))
     assert not un.find_spinning(model)
     assert not un.follow_from_onset(model, "flapping", 10.0)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from refusal import complaint
 from undula.analysis.solvers.spinning import find_spinning
-from undula.analysis.solvers.state_kinds import converged, with_error
+from undula.analysis.solvers.state_kinds import extrapolate, with_error
 from undula.analysis.states.extrapolation import Converged, converge, extrapolated
 from undula.analysis.states.records import NotFound, Spinning
 from undula.models.filament import Filament
@@ -134,7 +134,7 @@ def solved(load: Load, segments: int) -> Spinning:
 
 @cache
 def limit(load: Load, segments: int) -> Converged[Spinning]:
-    found = converged(Filament(segments, load), "spinning")
+    found = extrapolate(Filament(segments, load), "spinning")
     assert isinstance(found, Converged)
     return found
 
@@ -186,8 +186,8 @@ def test_the_error_of_a_single_state_is_near_its_distance_from_the_limit(
 
 
 def test_nothing_converges_where_there_is_no_state() -> None:
-    assert isinstance(converged(Filament(8, TipLoad(20.0)), "spinning"), NotFound)
+    assert isinstance(extrapolate(Filament(8, TipLoad(20.0)), "spinning"), NotFound)
 
 
 def test_another_kind_of_state_is_refused() -> None:
-    assert "'resting'" in complaint(lambda: converged(Filament(8, TipLoad(75.0)), "resting"))
+    assert "'resting'" in complaint(lambda: extrapolate(Filament(8, TipLoad(75.0)), "resting"))

@@ -195,7 +195,7 @@ def test_a_filament_without_curvature_is_the_plain_rod_whatever_the_twist() -> N
     for given in ((0.0, 0.0), CurvatureTable((0, 1), (0, 0), (0, 0)), lambda s: (0.0 * s, 0.0)):
         model = Filament(12, un.TipLoad(75.0), natural_curvature=given, twist="elastic")
         assert type(model.system) is type(plain.system)
-        assert model.continuum == plain.load
+        assert model.continuum_load == plain.load
 
 
 def test_curvature_comes_as_a_pair_a_table_or_a_function() -> None:
@@ -266,7 +266,7 @@ def test_small_motions_about_the_straight_state_are_refused() -> None:
     model = curved("rigid")
     assert "natural_curvature = (0, 0)" in complaint(model.linearised)
     assert "natural_curvature = (0, 0)" in complaint(lambda: un.mode(model))
-    assert model.continuum is None
+    assert model.continuum_load is None
 
 
 POINTS = {"s": [0, 0.4, 1], "k1": [RING, 3.0, 1.0], "k2": [0.0, 4.0, -2.0]}

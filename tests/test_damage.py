@@ -25,7 +25,7 @@ from undula.reproduction.tasks.task import Job
 from undula.storage import trial_reading
 from undula.storage.seal import Condition, condition
 from undula.storage.unchecked import StoredWarning
-from undula.sweeps.store import load_study, open_study
+from undula.sweeps.store import load_sweep, open_study
 from undula.sweeps.work_queue import SweepWork
 
 UNDULA = Path(sysconfig.get_path("scripts")) / "undula"
@@ -224,21 +224,21 @@ def flip(file: Path) -> None:
 def test_points_of_a_damaged_or_missing_chunk_are_not_done_and_done_again(
     name: str, spoil: Callable[[Path], None], store: Path, made: Path
 ) -> None:
-    whole = load_study(made / "s.zarr").load()
+    whole = load_sweep(made / "s.zarr").load()
     chunk = next((store / name).glob("[0-9]*"))
     spoil(chunk)
     if name == "status" and spoil is Path.unlink:
-        found = load_study(store).load()  # as if it had not been written yet
+        found = load_sweep(store).load()  # as if it had not been written yet
     else:
         with pytest.warns(StoredWarning, match="3 of its points count as not done; undula sweep"):
-            found = load_study(store).load()
+            found = load_sweep(store).load()
     assert (found["status"] == 0).all()
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("undula.sweeps.work_queue.warn_damaged", lambda *_: None)
         again = open_study(store, study(made, "period"))
         work_off(SweepWork(again), again.study)
     xr.testing.assert_identical(
-        load_study(store).load().drop_vars("seconds"), whole.drop_vars("seconds")
+        load_sweep(store).load().drop_vars("seconds"), whole.drop_vars("seconds")
     )
 
 
@@ -247,17 +247,17 @@ def test_axes_and_seeds_that_are_damaged_are_those_of_the_study(
     name: str, store: Path, made: Path
 ) -> None:
     flip(next((store / name).glob("[0-9]*")))
-    xr.testing.assert_identical(load_study(store).load(), load_study(made / "s.zarr").load())
+    xr.testing.assert_identical(load_sweep(store).load(), load_sweep(made / "s.zarr").load())
 
 
 @pytest.mark.parametrize("files", [".zmetadata", "*/.zarray", ".zattrs", ".zgroup", "*/.zattrs"])
 def test_either_copy_of_what_a_store_says_of_itself_will_do_and_the_other_is_mended(
     files: str, store: Path, made: Path
 ) -> None:
-    whole = load_study(made / "s.zarr").load()
+    whole = load_sweep(made / "s.zarr").load()
     for file in store.glob(files):
         flip(file)
-    xr.testing.assert_identical(load_study(store).load(), whole)
+    xr.testing.assert_identical(load_sweep(store).load(), whole)
     SweepWork(open_study(store, study(made, "period")))
     xr.testing.assert_identical(xr.open_zarr(store).load(), xr.open_zarr(made / "s.zarr").load())
 
@@ -265,7 +265,7 @@ def test_either_copy_of_what_a_store_says_of_itself_will_do_and_the_other_is_men
 def test_a_store_whose_metadata_are_all_damaged_is_refused(store: Path) -> None:
     for file in (store / ".zmetadata", store / ".zattrs"):
         file.write_text(file.read_text(encoding="utf-8").replace("60.0", "61.0"), encoding="utf-8")
-    assert "what it says of itself is damaged" in complaint(lambda: load_study(store)).replace(
+    assert "what it says of itself is damaged" in complaint(lambda: load_sweep(store)).replace(
         f"what {store} says", "what it says"
     )
 
@@ -282,7 +282,7 @@ def strange(store: Path, **changed: Any) -> str:
         attributes = told["metadata"][".zattrs"] if "metadata" in told else told
         del attributes["undula_digest"]
         file.write_text(json.dumps(told), encoding="utf-8")
-    return complaint(lambda: load_study(store))
+    return complaint(lambda: load_sweep(store))
 
 
 @pytest.mark.parametrize(
@@ -309,12 +309,12 @@ def test_codecs_and_types_that_are_not_ours_are_refused_before_zarr_sees_them(
 def test_a_study_that_python_stored_again_is_read_and_drawn_but_not_gone_on_with(
     again: str, store: Path, made: Path
 ) -> None:
-    whole, path = load_study(store), store.with_name(again)
+    whole, path = load_sweep(store), store.with_name(again)
     if again == "study.nc":
         whole.to_netcdf(path)
     else:
         whole.to_zarr(path, **({"zarr_format": 2} if again == "second.zarr" else {}))
-    xr.testing.assert_equal(load_study(path), whole.load())
+    xr.testing.assert_equal(load_sweep(path), whole.load())
     assert main(["status", str(path)]) == 0
     if path.is_dir():
         assert main(["plot", str(path)]) == 0
@@ -339,12 +339,12 @@ def test_a_store_of_ours_in_the_third_format_with_a_strange_codec_is_refused(
     told = json.loads(file.read_text(encoding="utf-8"))
     told["codecs"].append({"name": "numcodecs.pickle"})
     file.write_text(json.dumps(told), encoding="utf-8")
-    assert "asks for the codec 'numcodecs.pickle'" in complaint(lambda: load_study(path))
+    assert "asks for the codec 'numcodecs.pickle'" in complaint(lambda: load_sweep(path))
 
 
 @pytest.mark.slow
 def test_a_sweep_in_processes_of_its_own_does_damaged_points_again(store: Path, made: Path) -> None:
-    whole = load_study(made / "s.zarr").load()
+    whole = load_sweep(made / "s.zarr").load()
     flip(next((store / "verdict").glob("[0-9]*")))
     words = [UNDULA, "sweep", made / "study.toml", "--workers", "1", "--out", store, "--json"]
     told = subprocess.run(words, capture_output=True, text=True, timeout=300, check=False)
@@ -352,7 +352,7 @@ def test_a_sweep_in_processes_of_its_own_does_damaged_points_again(store: Path, 
     assert told.stderr.count("3 of its points count as not done") == 1
     assert "Traceback" not in told.stderr
     xr.testing.assert_identical(
-        load_study(store).load().drop_vars("seconds"), whole.drop_vars("seconds")
+        load_sweep(store).load().drop_vars("seconds"), whole.drop_vars("seconds")
     )
 
 

@@ -253,7 +253,7 @@ def test_nothing_a_run_and_other_links_lead_to_the_same_beat() -> None:
 
 
 def test_below_the_onset_there_is_none_and_the_advice_names_the_onset() -> None:
-    onset = un.critical_force(EIGHT, method="discrete")
+    onset = un.onset(EIGHT, method="discrete")
     assert onset.force is not None
     told = refused(find_flapping(EIGHT.with_(force=0.8 * onset.force)))
     assert f"begins at force {onset.force:.6g}" in told
@@ -273,7 +273,7 @@ def test_a_run_that_does_not_beat_is_no_guess() -> None:
 
 
 def test_spinning_and_flapping_leave_the_hopf_point_with_one_frequency() -> None:
-    onset = un.critical_force(EIGHT, method="discrete")
+    onset = un.onset(EIGHT, method="discrete")
     assert onset.force is not None
     assert onset.frequency is not None
     ratios = []

@@ -10,7 +10,7 @@ from searches import TURNING, found, mirrored, near, search, shooting
 from undula.numerics.orbits.floquet import floquet, floquet_of
 from undula.numerics.orbits.flow import linearised_flow
 from undula.numerics.orbits.periodic_orbit import Orbit, find_orbit
-from undula.numerics.orbits.symmetry import Closure
+from undula.numerics.orbits.symmetry import OrbitSymmetry
 
 
 def ridden(intervals: int) -> Orbit:
@@ -60,7 +60,7 @@ def test_a_turning_motion_has_two_trivial_multipliers_and_those_of_its_shape() -
 def test_multipliers_of_half_a_period_up_to_a_reflection_are_roots_of_the_full_ones() -> None:
     row = Row(count=3)
     guess = near(row.on_orbit(), 0.5 * row.period)
-    half = found(find_orbit(shooting(row, 20, Closure(mirrored)), guess, 0.0))
+    half = found(find_orbit(shooting(row, 20, OrbitSymmetry(mirrored)), guess, 0.0))
     whole = found(search(row, 40))
     one, other = floquet_of(half.shot), floquet_of(whole.shot)
     # The same intervals: the same discrete flow, to round-off of multipliers up to 1.

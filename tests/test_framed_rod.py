@@ -156,11 +156,14 @@ def test_each_plane_bends_with_its_own_stiffness(
 @pytest.mark.parametrize("twist", ["paper", "rigid"])
 def test_forces_along_links_are_those_of_the_continuum_to_second_order(twist: Any) -> None:
     ratio, errors, counts = 1.6, [], [20, 40, 80]
-    continuum = _forces_of_the_continuum(ratio, twist == "rigid")
+    continuum_load = _forces_of_the_continuum(ratio, twist == "rigid")
     for n in counts:
         model = framed({"natural_curvature": uneven, "bending_ratio": ratio}, twist, segments=n)
         model = model.with_(load=un.TipLoad(0.0))
-        nodes, middles = continuum(np.arange(n + 1) / n), continuum((np.arange(n) + 0.5) / n)
+        nodes, middles = (
+            continuum_load(np.arange(n + 1) / n),
+            continuum_load((np.arange(n) + 0.5) / n),
+        )
         y = model.unknowns(model.admissible(nodes[0][1:].ravel())).reshape(n, -1)
         y[:, 3] = 0.0
         net = -model.equations.residual(y.ravel(), np.zeros(y.size)).reshape(n, -1)[:, :3]

@@ -89,7 +89,7 @@ def onset(model: Model) -> float:
 
 
 def test_the_onset_goes_to_that_of_the_straight_filament_as_the_curvature_goes() -> None:
-    straight = un.critical_force(curved(1.0, (0.0, 0.0)), method="discrete").force
+    straight = un.onset(curved(1.0, (0.0, 0.0)), method="discrete").force
     shifts = [onset(curved(1.0, (k, 0.0))) - straight for k in (0.25, 0.5, 1.0)]
     # By symmetry it does with the square.
     assert shifts[2] / shifts[1] == pytest.approx(4.0, rel=0.05)
@@ -121,7 +121,7 @@ def test_onset_and_equilibrium_can_be_asked_along_the_curvature() -> None:
 
 
 def test_in_its_two_planes_an_anisotropic_filament_has_the_forces_of_its_two_stiffnesses() -> None:
-    straight = un.critical_force(curved(1.0, (0.0, 0.0)), method="discrete")
+    straight = un.onset(curved(1.0, (0.0, 0.0)), method="discrete")
     state = found(find_equilibrium(flat_sided(1.0, 1.5)))
     hopf = [one for one in follow(state, "load.force", 70.0).bifurcations if one.kind == "Hopf"]
     # Located to 1e-9 of the way that is followed.
@@ -313,7 +313,7 @@ def test_a_curved_run_tells_how_it_goes_round() -> None:
 def test_the_figure_of_winding_shows_angle_and_height_of_the_tip() -> None:
     time = np.linspace(0.0, 3.0, 301)
     nodes = line(time, askew(time)).nodes
-    figure = un.views.winding_figure([un.views.Winding("askew", time, nodes, 1.0)])
+    figure = un.views.winding_figure([un.views.TipAngleSeries("askew", time, nodes, 1.0)])
     traces = [one for axes in figure.axes for one in axes.lines if one.get_gid() == "trace"]
     angle, height = (one.get_ydata() for one in traces)
     assert angle[-1] - angle[0] == pytest.approx(6.0 * np.pi, abs=0.1)

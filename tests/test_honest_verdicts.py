@@ -15,7 +15,7 @@ import pytest
 import undula as un
 from refusal import complaint
 from small_studies import done, study_of
-from undula.analysis.ramps.ramp import Course, settle_and_step
+from undula.analysis.ramps.ramp import Ramp, ramp
 from undula.analysis.regimes import names, names_without_symmetry
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs import credibility
@@ -42,7 +42,7 @@ def ended(model: Model, start: State, **more: float) -> Run:
 @cache
 def stable(force: float) -> frozenset[str]:
     """Return the names of the solved states that are stable."""
-    (found,) = un.solved_line(TEN, [force])
+    (found,) = un.stability_along_force(TEN, [force])
     names = {found["verdict"], *filter(None, found["also"].split(", "))}
     return frozenset(names - {"undecided"})
 
@@ -265,9 +265,9 @@ def test_undecided_points_can_be_decided_by_the_solved_states(tmp_path: Path) ->
 
 
 def test_steps_of_a_series_keep_to_the_same_rules() -> None:
-    course = Course("load.force", (60.0, 75.0), kick=0.0)
+    course = Ramp("load.force", (60.0, 75.0), kick=0.0)
     schedule = Schedule(until="settled", limit=2.0, samples=400)
-    steps = list(settle_and_step(TEN, course, un.kicked(TEN, 1e-10), schedule))
+    steps = list(ramp(TEN, course, un.kicked(TEN, 1e-10), schedule))
     assert [step.verdict for step in steps] == ["undecided", "undecided"]
 
 
@@ -332,5 +332,5 @@ def test_the_glossary_names_every_verdict() -> None:
     known = {"straight", "undecided", "chaotic"} | {
         line.split("|")[1].strip() for line in words.splitlines() if line.startswith("| ")
     }
-    missing = {name for name in known - {"name", "---"} if f"`{name}`" not in row}
-    assert not missing
+    why_undecided = {name for name in known - {"name", "---"} if f"`{name}`" not in row}
+    assert not why_undecided

@@ -30,7 +30,7 @@ from undula.numerics.integration.stepper_state import (
     STEP,
     STEPS,
     TIME,
-    Memory,
+    StepperState,
 )
 from undula.numerics.integration.system import RATES
 
@@ -147,7 +147,7 @@ def test_on_a_rotating_wave_the_step_grows_without_bound_and_the_angle_stays_exa
     np.testing.assert_allclose(np.hypot(*rows[0, :2]), 1.0, atol=rtol)
 
 
-def same(one: Memory, other: Memory) -> bool:
+def same(one: StepperState, other: StepperState) -> bool:
     return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
 
 

@@ -17,7 +17,7 @@ import pytest
 import undula as un
 from undula.app.cli import main
 from undula.interrupts import ENDINGS, endings_heard, interruptible
-from undula.storage.ramp_file import load_steps
+from undula.storage.ramp_file import load_ramp
 from undula.storage.run_file import load_result
 from undula.terminal.output import INTERRUPTED
 
@@ -143,7 +143,7 @@ def test_a_series_of_steps_keeps_its_steps(
     answer, told = answered(capsys)
     assert answer["status"] == "interrupted"
     assert "interrupted after 1 of 3 steps; the same command goes on" in told
-    assert load_steps(tmp_path / "steps.nc").sizes["step"] == 1
+    assert load_ramp(tmp_path / "steps.nc").sizes["step"] == 1
 
 
 @each_signal
@@ -165,9 +165,7 @@ def test_a_branch_is_told_as_far_as_it_was_followed(
 def test_a_curve_of_thresholds_is_told_as_far_as_it_is_known(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(
-        "undula.analysis.solvers.thresholds.critical_force", _and_send(signal.SIGTERM)
-    )
+    monkeypatch.setattr("undula.analysis.solvers.thresholds.onset", _and_send(signal.SIGTERM))
     words = ["threshold", "onset", "--along", "model.drag_ratio=1:2:5", "--json"]
     assert main([*words, "--plot", str(tmp_path / "curve.png")]) == 3
     answer, told = answered(capsys)
@@ -178,11 +176,11 @@ def test_a_curve_of_thresholds_is_told_as_far_as_it_is_known(
 
 
 def _and_send(ending: signal.Signals) -> Any:
-    from undula.analysis.linear.stability import critical_force
+    from undula.analysis.linear.stability import onset
 
     def found(*given: Any, **options: Any) -> Any:
         signal.raise_signal(ending)
-        return critical_force(*given, **options)
+        return onset(*given, **options)
 
     return found
 

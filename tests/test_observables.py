@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from undula.analysis.observables.alignment import aligned_distance
 from undula.analysis.observables.planarity import in_plane, planarity, plane_angle
 from undula.analysis.observables.shapes import (
+    azimuth,
     displacement,
     envelope,
     mean_position,
     tip_height,
     tip_position,
     tip_radius,
-    winding_angle,
 )
 from undula.arrays import Array
 
@@ -90,7 +90,7 @@ def test_the_winding_angle_counts_whole_turns_with_their_sense() -> None:
     shape = arc(1.0, 10)
     for turns in (7.3, -7.3):
         nodes = np.stack([turned(shape, 2.0 * np.pi * turns * t) for t in time])
-        angle = winding_angle(nodes)
+        angle = azimuth(nodes)
         # Round-off of forty radians.
         assert angle[-1] - angle[0] == pytest.approx(2.0 * np.pi * turns, rel=1e-12)
 

@@ -15,7 +15,7 @@ from undula.numerics.continuation.newton import newton
 from undula.numerics.orbits.collocation import Outcome
 from undula.numerics.orbits.periodic_orbit import find_orbit, time_error
 from undula.numerics.orbits.shooting import Shooting, admissible
-from undula.numerics.orbits.symmetry import Closure
+from undula.numerics.orbits.symmetry import OrbitSymmetry
 
 
 @pytest.mark.parametrize("equations", [Row(), Row(count=3), Globe()], ids=repr)
@@ -38,7 +38,7 @@ def test_the_period_is_found_at_the_order_of_the_method(
     ("equations", "closure"), [(Row(count=3), EXACT), (Globe(), EXACT), (Carousel(), TURNING)]
 )
 def test_newton_s_method_converges_quadratically_also_from_off_the_constraint(
-    equations: Any, closure: Closure
+    equations: Any, closure: OrbitSymmetry
 ) -> None:
     times = [equations.period, equations.turning * equations.period]
     known = [1, 2][closure is TURNING]
@@ -61,7 +61,7 @@ def test_a_start_off_the_constraint_is_moved_onto_it_by_the_least() -> None:
 
 def test_half_a_period_up_to_a_reflection_is_half_the_orbit() -> None:
     row = Row(count=2)
-    half = shooting(row, 12, Closure(mirrored))
+    half = shooting(row, 12, OrbitSymmetry(mirrored))
     result = found(find_orbit(half, near(row.on_orbit(), 0.5 * row.period), 0.0))
     whole = found(search(row, 24))
     # The same intervals: the same orbit to the round-off that Newton's method ends at.
@@ -146,7 +146,7 @@ def test_the_derivative_of_the_residual_holds_across_and_off_the_constraint() ->
 
 def test_orbit_and_period_follow_the_parameter_as_they_should() -> None:
     # T = 2 pi / (W + b m), r = sqrt(m).
-    shoot, m = Shooting(row_of, Closure(), 60), 1.3
+    shoot, m = Shooting(row_of, OrbitSymmetry(), 60), 1.3
     orbit = found(find_orbit(shoot, near(row_of(m).on_orbit(), row_of(m).period), m))
     at = orbit.problem.evaluate(orbit.u, m)
     nothing = np.zeros(orbit.u.size)
@@ -159,7 +159,7 @@ def test_orbit_and_period_follow_the_parameter_as_they_should() -> None:
 
 
 def test_a_neighbouring_orbit_is_found_from_the_last_with_few_steps() -> None:
-    shoot = Shooting(row_of, Closure(), 24)
+    shoot = Shooting(row_of, OrbitSymmetry(), 24)
     orbit = found(find_orbit(shoot, near(row_of(1.0).on_orbit(), row_of(1.0).period), 1.0))
     problem = orbit.problem.referred_to(orbit.u)
     np.testing.assert_array_equal(problem.reference.x, orbit.u[:-1])

@@ -361,9 +361,7 @@ def test_a_figure_of_others_is_told_before_steps_are_made(
     refused: Callable[..., str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path("steps.png").write_bytes(MINE)
-    monkeypatch.setattr(
-        "undula.app.commands.step.settle_and_step", lambda *_, **__: pytest.fail("made")
-    )
+    monkeypatch.setattr("undula.app.commands.step.ramp", lambda *_, **__: pytest.fail("made"))
     assert "steps.png does not carry the mark" in refused(
         "step", "--along", "load.force=1:2:1", "--out", "."
     )

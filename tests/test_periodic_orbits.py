@@ -6,8 +6,8 @@ import pytest
 from refusal import complaint
 from undula.analysis.runs.integrate import integrate
 from undula.analysis.runs.run import Run
-from undula.analysis.solvers.criticality import Birth, births
-from undula.analysis.solvers.periodic_orbits import follow_born
+from undula.analysis.solvers.criticality import Criticality, criticality
+from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
 from undula.analysis.solvers.periodic_search import find_periodic
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.state_kinds import follow_from_onset
@@ -79,7 +79,7 @@ def test_what_flapping_gives_birth_to_ends_where_spinning_is_lost(gained: Thresh
     lost = threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
     assert gained.value is not None
     assert lost.value is not None
-    branch = follow_born(known(gained), lost.value + 5.0)
+    branch = follow_from_bifurcation(known(gained), lost.value + 5.0)
     assert all(state.leading_rate > 0.0 for state in branch.states[1:])
     # It begins with the beat's frequency and turns back at the spinning state's, where the change
     # of its shape dies out; both only differ by the steps in time.
@@ -92,11 +92,11 @@ def test_what_flapping_gives_birth_to_ends_where_spinning_is_lost(gained: Thresh
 
 def test_only_a_symmetry_breaking_of_flapping_gives_birth() -> None:
     spinning = threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
-    assert "torus of Spinning" in complaint(lambda: follow_born(known(spinning), 300.0))
+    assert "torus of Spinning" in complaint(lambda: follow_from_bifurcation(known(spinning), 300.0))
 
 
-def bends(load: TipLoad | LinearLoad | PointLoad, **changes: float) -> dict[str, Birth]:
-    found = births(Filament(16, load, **changes))  # type: ignore[arg-type]
+def bends(load: TipLoad | LinearLoad | PointLoad, **changes: float) -> dict[str, Criticality]:
+    found = criticality(Filament(16, load, **changes))  # type: ignore[arg-type]
     assert not isinstance(found, NotFound)
     return {birth.kind: birth for birth in found}
 

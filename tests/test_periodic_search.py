@@ -14,7 +14,7 @@ from refusal import complaint
 from undula.analysis.observables.alignment import aligned_distance
 from undula.analysis.regimes.recurrence import recurrence
 from undula.analysis.solvers.periodic_guesses import Seen
-from undula.analysis.solvers.periodic_search import come_to
+from undula.analysis.solvers.periodic_search import reached
 from undula.analysis.states.records import NotFound
 
 THREE = un.Chain(3, un.TipLoad(100.0))
@@ -91,7 +91,7 @@ def test_a_run_that_tells_half_its_period_is_solved_for_with_the_whole(settled: 
     # Of too few samples for a recurrence.
     last = settled.shown.time[-2:], settled.shown.nodes[-2:]
     seen = Seen(*last, "windmilling", 0.5 * settled.settled.period, 0.0)
-    check(found(come_to(THREE, seen)), settled)
+    check(found(reached(THREE, seen)), settled)
 
 
 def test_another_motion_than_the_run_ends_with_is_no_answer(settled: un.Run) -> None:
@@ -99,7 +99,7 @@ def test_another_motion_than_the_run_ends_with_is_no_answer(settled: un.Run) -> 
     assert settled.settled.period is not None
     last = settled.shown.time[-2:], settled.shown.nodes[-2:]
     # Neither this nor its double is a period of the motion.
-    state = come_to(THREE, Seen(*last, "windmilling", 0.7 * settled.settled.period, 0.0))
+    state = reached(THREE, Seen(*last, "windmilling", 0.7 * settled.settled.period, 0.0))
     assert isinstance(state, NotFound)
     assert "guess" in state.reason or "is another one: its period is" in state.reason
 

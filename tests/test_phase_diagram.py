@@ -20,11 +20,11 @@ from matplotlib.figure import Figure
 
 from refusal import complaint
 from sweeps import coded, made_up, path_of, shape_of
-from undula.analysis.maps.stability_boundaries import Borders
-from undula.analysis.maps.stability_intervals import Change, Stretches
+from undula.analysis.maps.stability_boundaries import StabilityBoundaries
+from undula.analysis.maps.stability_intervals import Change, StabilityIntervals
 from undula.app.cli import main
 from undula.sweeps.boundary_cache import NAME, keep_borders
-from undula.sweeps.store import load_study, open_study
+from undula.sweeps.store import load_sweep, open_study
 from undula.sweeps.sweep import read_study
 from undula.views import gallery, mean_paths, phase_diagram, phase_page
 from undula.views.sweep.axes import scale_of
@@ -454,16 +454,18 @@ def told(capsys: pytest.CaptureFixture[str]) -> Any:
     return json.loads(capsys.readouterr().out)
 
 
-def known_borders(up_to: float = 160.0) -> Borders:
+def known_borders(up_to: float = 160.0) -> StabilityBoundaries:
     """Return borders by which spinning ends at 100."""
     column = {
-        "straight": Stretches("straight", 0.0, ((0.0, 30.0),), np.inf, lost=Change(30.0, 0.1, 5.0)),
-        "spinning": Stretches(
+        "straight": StabilityIntervals(
+            "straight", 0.0, ((0.0, 30.0),), np.inf, lost=Change(30.0, 0.1, 5.0)
+        ),
+        "spinning": StabilityIntervals(
             "spinning", 30.0, ((30.0, 100.0),), up_to, lost=Change(100.0, 0.1, 90.0)
         ),
-        "flapping": Stretches("flapping", 30.0, (), up_to),
+        "flapping": StabilityIntervals("flapping", 30.0, (), up_to),
     }
-    return Borders("load.exponent", (0.0, 1.0), up_to, (column, column))
+    return StabilityBoundaries("load.exponent", (0.0, 1.0), up_to, (column, column))
 
 
 def test_a_folder_is_drawn_as_a_study(study: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -504,7 +506,7 @@ def test_a_page_is_written_where_its_name_says_so(
 def test_kept_borders_are_used_and_contradicting_runs_told(
     study: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    keep_borders(study, load_study(study), known_borders())
+    keep_borders(study, load_sweep(study), known_borders())
     assert main(["plot", str(study), "--borders", "--json"]) == 0
     answer = told(capsys)
     assert [one["force"] for one in answer["borders"]["spinning-lost"]] == [100.0, 100.0]

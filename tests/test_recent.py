@@ -6,7 +6,7 @@ import undula as un
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.fine_tail import close_up
 from undula.analysis.runs.run import Run
-from undula.analysis.runs.sample_buffer import KEPT, Recent, parts_of
+from undula.analysis.runs.sample_buffer import KEPT, SampleBuffer, parts_of
 from undula.analysis.runs.simulation import Simulation
 
 
@@ -16,7 +16,7 @@ def counted(first: int, last: int) -> np.ndarray:
 
 
 def test_rows_are_had_at_multiples_of_an_interval_if_all_are_there() -> None:
-    recent = Recent()
+    recent = SampleBuffer()
     recent.note(0.25, 3, counted(3, 10))
     recent.note(0.25, 10, counted(10, 18))
     assert recent.samples(0.25, 3, 17)[:, 0].tolist() == list(range(3, 18))
@@ -27,7 +27,7 @@ def test_rows_are_had_at_multiples_of_an_interval_if_all_are_there() -> None:
 
 
 def test_rows_with_a_gap_before_them_are_all_that_is_known() -> None:
-    recent = Recent()
+    recent = SampleBuffer()
     recent.note(0.25, 3, counted(3, 10))
     recent.note(0.25, 11, counted(11, 15))
     assert recent.samples(0.25, 9, 14) is None
@@ -36,7 +36,7 @@ def test_rows_with_a_gap_before_them_are_all_that_is_known() -> None:
 
 def test_rows_are_thinned_for_a_longer_interval() -> None:
     for last in range(10, 18):
-        recent = Recent()
+        recent = SampleBuffer()
         recent.note(0.25, 3, counted(3, last))
         following = recent.following(1.0)
         assert following == -(-last // 4)
@@ -45,7 +45,7 @@ def test_rows_are_thinned_for_a_longer_interval() -> None:
 
 
 def test_rows_are_kept_up_to_a_number() -> None:
-    recent = Recent()
+    recent = SampleBuffer()
     for first in range(0, 10 * KEPT, KEPT // 4):
         recent.note(0.25, first, counted(first, first + KEPT // 4))
     assert KEPT <= sum(map(len, recent.rows)) < KEPT + KEPT // 4

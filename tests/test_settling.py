@@ -13,7 +13,7 @@ from undula.analysis.runs.settling import (
     SHOWN_ARRIVED,
     SHOWN_CYCLES,
     TOLERANCE_IN_RTOL,
-    Pace,
+    MotionRates,
     Settled,
     Watch,
 )
@@ -35,7 +35,7 @@ def watched(offs: list[float], every: float = BEAT) -> Watch:
     watch = Watch(RTOL, 0.1)
     for number, off in enumerate(offs):
         time = (number + 1) * every
-        pace = Pace(time, shape_speed=50.0, displacement=0.3, turn_rate=0.0)
+        pace = MotionRates(time, shape_speed=50.0, displacement=0.3, turn_rate=0.0)
         watch.note(pace, [(time, shape(off))])
     return watch
 

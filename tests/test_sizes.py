@@ -20,7 +20,7 @@ from undula.models.filament import Filament
 from undula.models.loads.analytic import TipLoad
 from undula.models.rod.tables import RODS
 from undula.numerics.integration.step import Options
-from undula.numerics.integration.stepper_state import Memory
+from undula.numerics.integration.stepper_state import StepperState
 from undula.numerics.integration.system import belongs, derivative_width, matrix_width
 
 LOAD = TipLoad(50.0)
@@ -109,7 +109,7 @@ def given(name: str, system: Any, other: dict[str, Array] | None = None) -> tupl
     tolerances = {"rtol": 1.0, "atol": 1.0, "stale_after": 1.0, "longest_step": 1.0, "frame": 0}
     made = NUMBERS | filled | {"system": system}
     if "memory.count" in filled:
-        made["memory"] = record(Memory, "memory.", {})
+        made["memory"] = record(StepperState, "memory.", {})
         made["options"] = record(Options, "options.", tolerances)
     return tuple(made[argument] for argument in inspect.signature(function).parameters)
 

@@ -10,7 +10,7 @@ import pytest
 import undula as un
 from refusal import complaint
 from undula.analysis.linear.stability import spectrum
-from undula.analysis.maps.stability_along_force import solved_line, solved_record
+from undula.analysis.maps.stability_along_force import solved_record, stability_along_force
 from undula.analysis.maps.states_at_forces import states_along
 from undula.analysis.solvers.thresholds import threshold
 from undula.analysis.states.records import Flapping, NotFound, Spinning
@@ -23,7 +23,7 @@ FORCES = (100.0, 20.0, 141.0, 160.0, 230.0)
 
 @cache
 def line() -> tuple[dict[str, Any], ...]:
-    return tuple(solved_line(EIGHT, FORCES))
+    return tuple(stability_along_force(EIGHT, FORCES))
 
 
 def at(force: float) -> dict[str, Any]:
@@ -126,9 +126,9 @@ def test_a_single_record_is_that_of_a_line() -> None:
 
 
 def test_spinning_that_is_born_downwards_is_told_beside_the_straight_state() -> None:
-    hopf = un.critical_force(LOW, method="discrete").force
+    hopf = un.onset(LOW, method="discrete").force
     assert hopf is not None
-    below, far_below, above = solved_line(LOW, [0.97 * hopf, 0.7 * hopf, 1.05 * hopf])
+    below, far_below, above = stability_along_force(LOW, [0.97 * hopf, 0.7 * hopf, 1.05 * hopf])
     assert (below["verdict"], below["also"]) == ("straight", "spinning")
     assert (far_below["verdict"], far_below["spinning"]) == ("straight", "none")
     assert above["verdict"] == "spinning"
@@ -138,7 +138,7 @@ def test_spinning_that_is_born_downwards_is_told_beside_the_straight_state() -> 
 
 
 def test_a_confined_filament_flaps_and_never_spins() -> None:
-    (told,) = solved_line(EIGHT.with_(confined=True), [75.0])
+    (told,) = stability_along_force(EIGHT.with_(confined=True), [75.0])
     assert (told["verdict"], told["spinning"]) == ("planar flapping", "none")
     free = found("flapping", 75.0)
     assert isinstance(free, Flapping)
@@ -155,7 +155,7 @@ def test_progress_tells_the_forces_that_a_branch_has_reached() -> None:
 
 
 def test_no_forces_have_no_records() -> None:
-    assert solved_line(EIGHT, []) == []
+    assert stability_along_force(EIGHT, []) == []
 
 
 def test_a_kind_that_is_none_is_refused() -> None:

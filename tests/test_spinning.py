@@ -14,7 +14,7 @@ import undula
 from cases import filament, random_state
 from refusal import complaint
 from undula.analysis.solvers.spinning import FORCE, find_spinning
-from undula.analysis.solvers.state_kinds import converged, follow
+from undula.analysis.solvers.state_kinds import extrapolate, follow
 from undula.analysis.solvers.thresholds import threshold
 from undula.analysis.states.records import NotFound, Spinning
 from undula.analysis.states.relative_equilibrium import TurningShape
@@ -189,7 +189,7 @@ def reason(found: Spinning | NotFound) -> str:
 @pytest.mark.parametrize("force", [0.0, 20.0, 36.0])
 def test_below_the_hopf_force_there_is_none_and_the_force_is_told(force: float) -> None:
     told = reason(find_spinning(MODEL.with_(force=force)))
-    onset = undula.critical_force(MODEL, method="discrete").force
+    onset = undula.onset(MODEL, method="discrete").force
     assert f"begins at force {onset:.6g}" in told
     assert "larger force" in told
 
@@ -238,7 +238,7 @@ def test_a_confined_model_is_refused() -> None:
 @pytest.mark.parametrize("to", [10.0, 30.0, 36.5])
 def test_a_branch_followed_down_ends_at_the_hopf_point(to: float) -> None:
     branch = follow(solved(MODEL), FORCE, to)
-    onset = undula.critical_force(MODEL, method="discrete").hopf
+    onset = undula.onset(MODEL, method="discrete").hopf
     assert onset is not None
     assert not branch.complete
     # It ends where a step of 1e-6 of a tenth of the way would pass the straight state.
@@ -462,7 +462,7 @@ class Continuum:
 def test_many_links_converge_to_the_boundary_value_problem_of_the_filament(
     model: Filament,
 ) -> None:
-    limit = converged(model, "spinning")
+    limit = extrapolate(model, "spinning")
     assert not isinstance(limit, NotFound)
     expected = Continuum(model.load, model.drag_ratio).solve(limit.finest)
     for name, value in expected.items():

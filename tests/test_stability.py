@@ -22,7 +22,8 @@ from independent import (
 from undula.analysis.linear.onset import find_onset
 from undula.analysis.linear.pencils import AssumedModes, Polynomials, linearised
 from undula.analysis.linear.results import Method, Onset
-from undula.analysis.linear.stability import critical_force, spectrum
+from undula.analysis.linear.stability import onset as onset_of
+from undula.analysis.linear.stability import spectrum
 from undula.arrays import ComplexArray
 from undula.models.filament import Filament
 from undula.models.initial_states import leading_mode
@@ -41,7 +42,7 @@ PULLING = TableLoad(10.0, (0.0, 0.2, 0.4, 1.0), (1.0, 1.0, -0.4, -0.4))
 
 @cache
 def onset(load: Load, method: Method | None = None, *, segments: int = 40, later: int = 0) -> Onset:
-    return critical_force(Filament(segments, load), method=method, later=later)
+    return onset_of(Filament(segments, load), method=method, later=later)
 
 
 def hopf(load: Load, method: Method | None = None, *, segments: int = 40) -> tuple[float, float]:

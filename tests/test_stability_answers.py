@@ -9,7 +9,7 @@ import undula as un
 from cases import ALL_LOADS, every_form, filament
 from refusal import complaint
 from undula.analysis.linear.results import Method
-from undula.analysis.linear.stability import critical_curve, critical_force, growth_curve, spectrum
+from undula.analysis.linear.stability import critical_curve, growth_curve, onset, spectrum
 from undula.analysis.observables.linear_mode import linear_motion
 from undula.models.filament import Filament
 from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
@@ -30,7 +30,7 @@ PULLING = Filament(10, TableLoad(10.0, (0.0, 0.2, 0.4, 1.0), (1.0, 1.0, -0.4, -0
 def test_the_growth_slope_is_the_change_of_the_leading_rate(method: Method) -> None:
     for load in (TipLoad(1.0), PointLoad(1.0, 0.6), LinearLoad(1.0, -1.0)):
         model = Filament(20, load)
-        hopf = critical_force(model, method=method).hopf
+        hopf = onset(model, method=method).hopf
         assert hopf is not None
         step = 1e-4 * hopf.force
         above, below = (
@@ -42,7 +42,7 @@ def test_the_growth_slope_is_the_change_of_the_leading_rate(method: Method) -> N
 
 @every_method
 def test_the_leading_eigenvalue_at_the_threshold_is_the_pair_on_the_axis(method: Method) -> None:
-    found = critical_force(UNIFORM, method=method)
+    found = onset(UNIFORM, method=method)
     at = spectrum(UNIFORM, found.force, method=method)
     # Round-off of the discrete eigenvalues, relative to the frequency.
     assert abs(at.rates[0]) < 1e-8 * abs(at.values[0])
@@ -53,7 +53,7 @@ def test_the_leading_eigenvalue_at_the_threshold_is_the_pair_on_the_axis(method:
 def test_the_leading_eigenvalue_is_real_up_to_the_oscillatory_force_and_complex_beyond(
     method: Method,
 ) -> None:
-    ringing = critical_force(UNIFORM, method=method).oscillatory_force
+    ringing = onset(UNIFORM, method=method).oscillatory_force
     assert ringing is not None
     shares = np.array([0.0, 0.5, 0.99, 0.9999, 1.0001, 1.01, 1.5])
     curve = growth_curve(UNIFORM, shares * ringing, method=method)
@@ -69,7 +69,7 @@ def test_paper_time_divides_rates_and_frequencies_by_the_drag_ratio(form) -> Non
     np.testing.assert_allclose(papers.values, ours.values / 3.0, **exactly)
     np.testing.assert_allclose(papers.errors, ours.errors / 3.0, **exactly)
     assert (ours.paper_time, papers.paper_time) == (False, True)
-    here, there = (critical_force(model, paper_time=paper_time) for paper_time in (False, True))
+    here, there = (onset(model, paper_time=paper_time) for paper_time in (False, True))
     assert (there.force, there.error) == (here.force, here.error)
     assert there.oscillatory_force == here.oscillatory_force
     for one, other in zip((here.hopf, *here.later), (there.hopf, *there.later), strict=True):
@@ -131,7 +131,7 @@ def test_stated_errors_of_eigenvalues_cover_the_true_ones(method: Method) -> Non
 
 @pytest.mark.parametrize("load", [TipLoad(1.0), LinearLoad(1.0), PowerLoad(1.0, 2.5)], ids=repr)
 def test_the_critical_mode_of_the_links_tends_to_that_of_the_continuum(load: Load) -> None:
-    force = critical_force(Filament(20, load)).force
+    force = onset(Filament(20, load)).force
     exact, errors = spectrum(Filament(20, load), force), []
     for segments in (20, 40, 100):
         found = spectrum(Filament(segments, load), force, method="discrete")
@@ -146,22 +146,22 @@ def test_the_critical_mode_of_the_links_tends_to_that_of_the_continuum(load: Loa
 def test_extensible_links_stand_for_no_inextensible_continuum() -> None:
     weak = Filament(20, TipLoad(30.0), inextensibility="weak")
     for method in ("spectral", "modes"):
-        sentence = complaint(lambda method=method: critical_force(weak, method=method))
+        sentence = complaint(lambda method=method: onset(weak, method=method))
         assert "inextensible" in sentence
         assert "'discrete'" in sentence
-    assert critical_force(weak).method == spectrum(weak).method == "discrete"
-    assert critical_force(weak).force == critical_force(weak, method="discrete").force
-    assert critical_force(Filament(20, TipLoad(30.0))).method == "spectral"
+    assert onset(weak).method == spectrum(weak).method == "discrete"
+    assert onset(weak).force == onset(weak, method="discrete").force
+    assert onset(Filament(20, TipLoad(30.0))).method == "spectral"
 
 
 def test_the_threshold_of_extensible_links_tends_to_the_rigid_one_with_their_stiffness() -> None:
     rigid = Filament(20, TipLoad(1.0))
-    force = critical_force(rigid, method="discrete").force
+    force = onset(rigid, method="discrete").force
     assert force is not None
     stiffness, shares = np.array([1e4, 1e5, 1e6]), []
     for value in stiffness:
         weak = replace(rigid, inextensibility="weak", tensile_stiffness=float(value))
-        shares.append(critical_force(weak).force / force - 1.0)
+        shares.append(onset(weak).force / force - 1.0)
     # The next term is the share itself, 4e-3 at most.
     slopes = np.diff(np.log(shares)) / np.diff(np.log(stiffness))
     np.testing.assert_allclose(slopes, -1.0, rtol=0.0, atol=0.01)
@@ -174,7 +174,7 @@ def test_very_soft_links_are_searched_no_further_than_they_have_a_length(
     stiffness: float, loses: bool
 ) -> None:
     soft = Filament(20, TipLoad(1.0), inextensibility="weak", tensile_stiffness=stiffness)
-    found = critical_force(soft)
+    found = onset(soft)
     assert (found.hopf is not None) == loses
     assert 0.5 * 37.0 < found.searched_to < stiffness
 
@@ -189,7 +189,7 @@ def test_a_curve_of_thresholds_has_the_threshold_of_each_value() -> None:
     assert (curve.parameter, curve.method) == ("load.slope", "spectral")
     np.testing.assert_array_equal(curve.values, slopes)
     for k, slope in enumerate(slopes):
-        alone = critical_force(UNIFORM.with_(slope=slope), later=0)
+        alone = onset(UNIFORM.with_(slope=slope), later=0)
         assert curve.onsets[k] == alone
         assert alone.hopf is not None
         assert curve.forces[k] == alone.force
@@ -209,13 +209,13 @@ def test_a_curve_over_the_number_of_links_is_that_of_the_links() -> None:
     curve = critical_curve(UNIFORM, "model.segments", [10, 20.0], method="discrete")
     for force, segments in zip(curve.forces, (10, 20), strict=True):
         model = replace(UNIFORM, segments=segments)
-        assert force == critical_force(model, method="discrete", later=0).force
+        assert force == onset(model, method="discrete", later=0).force
 
 
 def test_a_parameter_that_was_given_as_a_whole_number_takes_fractions() -> None:
     model = Filament(20, LinearLoad(60, 1))
     curve = critical_curve(model, "load.slope", [0.5])
-    assert curve.forces[0] == critical_force(UNIFORM.with_(slope=0.5), later=0).force
+    assert curve.forces[0] == onset(UNIFORM.with_(slope=0.5), later=0).force
 
 
 def test_a_growth_curve_has_the_leading_eigenvalue_at_each_force() -> None:
@@ -256,12 +256,12 @@ def test_a_growth_curve_with_a_parameter_has_a_row_for_each_value() -> None:
 NAN = float("nan")
 
 REFUSED = [
-    (lambda: critical_force(UNIFORM, method="exact"), "method = 'exact'"),
+    (lambda: onset(UNIFORM, method="exact"), "method = 'exact'"),
     (lambda: spectrum(UNIFORM, method="exact"), "'spectral', 'modes' or 'discrete'"),
     (lambda: growth_curve(UNIFORM, [1.0], method="exact"), "method = 'exact'"),
     (lambda: critical_curve(UNIFORM, "load.slope", [0.0], method="exact"), "method = 'exact'"),
-    (lambda: critical_force(UNIFORM, later=-1), "later = -1"),
-    (lambda: critical_force(UNIFORM, later=1.5), "later = 1.5"),
+    (lambda: onset(UNIFORM, later=-1), "later = -1"),
+    (lambda: onset(UNIFORM, later=1.5), "later = 1.5"),
     (lambda: spectrum(UNIFORM, count=0), "count = 0"),
     (lambda: spectrum(UNIFORM, count=2.0), "count = 2.0"),
     (lambda: spectrum(UNIFORM, -1.0), "force = -1.0"),
@@ -305,7 +305,7 @@ def test_paper_time_has_no_meaning_without_a_drag_ratio() -> None:
 
         load: Load
 
-    assert "drag ratio" in complaint(lambda: critical_force(Chain(TipLoad(1.0)), paper_time=True))
+    assert "drag ratio" in complaint(lambda: onset(Chain(TipLoad(1.0)), paper_time=True))
 
 
 # ---------------------------------------------------------------- in time
@@ -328,7 +328,7 @@ def test_runs_on_either_side_of_the_threshold_decay_and_grow_as_predicted(
     load: Load, share: float
 ) -> None:
     model = Filament(40, load)
-    force = critical_force(model, method="discrete", later=0).force
+    force = onset(model, method="discrete", later=0).force
     assert force is not None
     model = model.with_(force=share * force)
     predicted = spectrum(model, method="discrete")

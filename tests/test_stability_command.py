@@ -77,7 +77,7 @@ def linear(slope: float, force: float = 75.0) -> un.Filament:
 def test_a_single_case_is_answered_with_what_python_computes(ask: Ask) -> None:
     found = answer(ask("--set", "load.force=60", "--json"))
     filament = un.Filament(segments=40, load=un.TipLoad(60.0))
-    onset, spectrum = un.critical_force(filament), un.spectrum(filament)
+    onset, spectrum = un.onset(filament), un.spectrum(filament)
     assert onset.hopf is not None
     # JSON holds every digit of a number: these are equal, not close.
     assert found == {
@@ -131,9 +131,7 @@ def test_every_method_is_reached_by_its_option_and_by_its_key(method: str, ask: 
     short = answer(ask("--method", method, "--json"))
     assert short == answer(ask("--set", f"stability.method={method}", "--json"))
     assert short["method"] == method
-    onset = un.critical_force(
-        un.Filament(segments=40, load=un.TipLoad(75.0)), method=cast(Any, method)
-    )
+    onset = un.onset(un.Filament(segments=40, load=un.TipLoad(75.0)), method=cast(Any, method))
     assert short["hopf_force"] == onset.force
 
 
@@ -264,7 +262,7 @@ def test_a_table_from_a_file_is_the_profile_that_it_samples(ask: Ask) -> None:
     found = answer(ask("half.toml", "--json"))
     assert found["load"] == "table force 75 (3 points)"
     # Falls from 4/3 to 2/3 of its mean.
-    same = un.critical_force(linear(-1.0 / 3.0))
+    same = un.onset(linear(-1.0 / 3.0))
     # Equal but for round-off: the matrices come from other integrals.
     assert found["hopf_force"] == pytest.approx(same.force, rel=1e-11)
 
@@ -390,7 +388,7 @@ def test_people_read_what_happens_at_which_force(ask: Ask) -> None:
         *("rings from", "oscillates from", "frequency", "growth slope", "later", "later"),
         *("at 75", "at 75", "at 75"),
     ]
-    onset = un.critical_force(un.Filament(segments=40, load=un.TipLoad(75.0)))
+    onset = un.onset(un.Filament(segments=40, load=un.TipLoad(75.0)))
     assert f"{onset.force:.10f}" in said
     assert "cycles per T" in lines[2][-1]
     assert "(T/gamma)" in ask("--set", "stability.paper_time=true")[1]

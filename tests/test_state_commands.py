@@ -174,9 +174,7 @@ def test_below_the_onset_there_is_no_state_and_the_reason_names_the_force(
     found = answer(ask(*words, "--json"))
     assert found.keys() == {"status", "units", "reason", "residual"}
     assert found["status"] == "not found"
-    assert f"begins at force {un.critical_force(EIGHT, method='discrete').force:.6g}" in str(
-        found["reason"]
-    )
+    assert f"begins at force {un.onset(EIGHT, method='discrete').force:.6g}" in str(found["reason"])
     status, said, told = ask(*words)
     assert (status, told) == (0, "")
     assert said == f"tip force 30: {kind} not found: {found['reason']}\n"
@@ -248,7 +246,7 @@ def test_a_branch_may_be_followed_down_and_along_the_drag_ratio(ask: Ask) -> Non
 
 def test_a_branch_from_the_onset_tells_how_it_is_born(ask: Ask) -> None:
     found = answer(ask("follow", "spinning", *FEW, "--along", "load.force=onset:45", "--json"))
-    onset = un.critical_force(EIGHT, method="discrete")
+    onset = un.onset(EIGHT, method="discrete")
     assert found["birth"] == "supercritical"
     # The first point lies a little off the Hopf point.
     assert found["points"][0]["load.force"] == pytest.approx(onset.force, rel=0.01)
@@ -258,7 +256,7 @@ def test_a_branch_from_the_onset_tells_how_it_is_born(ask: Ask) -> None:
 
 def test_the_straight_state_is_followed_through_its_onset(ask: Ask) -> None:
     found = answer(ask("follow", "straight", *FEW, "--along", "load.force=20:50", "--json"))
-    onset = un.critical_force(EIGHT)
+    onset = un.onset(EIGHT)
     (hopf,) = found["bifurcations"]
     assert hopf.keys() == BIFURCATION
     # Bisected to round-off of the rate.

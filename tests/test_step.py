@@ -15,7 +15,7 @@ import pytest
 import xarray as xr
 
 from refusal import complaint
-from undula.analysis.ramps.ramp import Course, Step, settle_and_step
+from undula.analysis.ramps.ramp import Ramp, Step, ramp
 from undula.analysis.ramps.regime_changes import (
     Hysteresis,
     RegimeChange,
@@ -34,8 +34,8 @@ from undula.models.chain import Chain
 from undula.models.filament import Filament
 from undula.models.initial_states import kicked, planar, straight
 from undula.models.loads.analytic import TipLoad
-from undula.storage.ramp_file import load_steps, stored_steps
-from undula.views import step_diagram
+from undula.storage.ramp_file import load_ramp, stored_steps
+from undula.views import ramp_diagram
 from undula.views.ramp.gallery import chosen_steps, seen_from_aside
 
 TWO = ["--set", "model.kind=chain", "--set", "model.links=2"]
@@ -60,7 +60,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def series(folder: Path) -> xr.Dataset:
-    return load_steps(folder / "steps.nc")
+    return load_ramp(folder / "steps.nc")
 
 
 @pytest.fixture
@@ -148,23 +148,23 @@ def test_ten_thousand_steps_are_not_too_many() -> None:
 
 
 def test_the_way_back_goes_through_the_same_values() -> None:
-    course = Course("load.force", (1.0, 2.0, 3.0), back=True)
+    course = Ramp("load.force", (1.0, 2.0, 3.0), back=True)
     there = ((1.0, "up"), (2.0, "up"), (3.0, "up"))
-    assert course.stops == (*there, (2.0, "down"), (1.0, "down"))
-    falling = Course("load.slope", (1.0, 0.0), back=True)
-    assert falling.stops == ((1.0, "down"), (0.0, "down"), (1.0, "up"))
+    assert course.targets == (*there, (2.0, "down"), (1.0, "down"))
+    falling = Ramp("load.slope", (1.0, 0.0), back=True)
+    assert falling.targets == ((1.0, "down"), (0.0, "down"), (1.0, "up"))
 
 
 @pytest.mark.parametrize("kick", [-1e-3, 1.6, math.nan, math.inf])
 def test_a_kick_out_of_its_range_is_refused(kick: float) -> None:
-    assert complaint(lambda: Course("load.force", (1.0, 2.0), kick=kick)) == (
+    assert complaint(lambda: Ramp("load.force", (1.0, 2.0), kick=kick)) == (
         f"kick = {kick} is out of range; give an angle from 0 to pi/2 (radians)"
     )
 
 
 def test_a_parameter_has_to_be_real_and_in_its_range() -> None:
     def models(parameter: str, *values: float) -> None:
-        Course(parameter, values).models(PAIR)
+        Ramp(parameter, values).models(PAIR)
 
     assert "along model.links; take load.force or" in complaint(lambda: models("model.links", 2, 3))
     assert "along load.frce; take load.force or" in complaint(lambda: models("load.frce", 2, 3))
@@ -173,7 +173,7 @@ def test_a_parameter_has_to_be_real_and_in_its_range() -> None:
 
 def test_joints_that_wind_up_are_not_stepped() -> None:
     winding = replace(PAIR, confined=True, spring="unwrapped")
-    told = complaint(lambda: Course("load.force", (1.0, 2.0)).models(winding))
+    told = complaint(lambda: Ramp("load.force", (1.0, 2.0)).models(winding))
     assert "full turns between two steps; use model.spring = 'angle'" in told
 
 
@@ -190,24 +190,24 @@ def test_steps_settle_unless_the_input_gives_a_time() -> None:
 # ---------------------------------------------------------------- from step to step
 
 
-def steps_of(model: Any, course: Course, start: Any, **schedule: Any) -> list[Step]:
-    return list(settle_and_step(model, course, start, Schedule(**(asdict(SETTLE) | schedule))))
+def steps_of(model: Any, course: Ramp, start: Any, **schedule: Any) -> list[Step]:
+    return list(ramp(model, course, start, Schedule(**(asdict(SETTLE) | schedule))))
 
 
 def test_a_kick_leaves_a_state_that_is_unstable_and_none_keeps_it() -> None:
     # Planar flapping of two links is unstable out of its plane (Ling, Guo & Kanso 2018).
     start = planar(PAIR, 0.1)
-    kept = steps_of(PAIR, Course("load.force", (8.0, 9.0), kick=0.0), start)
-    left = steps_of(PAIR, Course("load.force", (8.0, 9.0)), start)
+    kept = steps_of(PAIR, Ramp("load.force", (8.0, 9.0), kick=0.0), start)
+    left = steps_of(PAIR, Ramp("load.force", (8.0, 9.0)), start)
     assert [step.verdict for step in kept] == ["planar flapping"] * 2
     assert [step.verdict for step in left] == ["spinning"] * 2
 
 
 def test_each_step_begins_where_the_one_before_ended() -> None:
-    start, course = kicked(PAIR, 0.3), Course("load.force", (2.0, 3.0), kick=0.0)
+    start, course = kicked(PAIR, 0.3), Ramp("load.force", (2.0, 3.0), kick=0.0)
     one, two = steps_of(PAIR, course, start, until=0.5)
     again = steps_of(
-        PAIR, Course("load.force", (3.0, 4.0), kick=0.0), PAIR.from_nodes(one.nodes), until=0.5
+        PAIR, Ramp("load.force", (3.0, 4.0), kick=0.0), PAIR.from_nodes(one.nodes), until=0.5
     )[0]
     np.testing.assert_array_equal(two.nodes, again.nodes)
     assert (one.status, one.time) == ("done", 0.5)
@@ -217,7 +217,7 @@ def test_each_step_begins_where_the_one_before_ended() -> None:
 def test_a_kick_turns_no_link_by_more_than_it_says(kick: float) -> None:
     # A run this short, relative to the slowest motion of two links under no load, does not move
     # the chain by more than a thousandth of the kick.
-    course = Course("load.force", (0.0, 1e-9), kick=kick)
+    course = Ramp("load.force", (0.0, 1e-9), kick=kick)
     step = steps_of(PAIR, course, straight(PAIR), until=1e-5)[0]
     links = np.diff(step.nodes, axis=0)
     turned = np.arctan2(np.hypot(links[:, 0], links[:, 1]), links[:, 2])
@@ -226,7 +226,7 @@ def test_a_kick_turns_no_link_by_more_than_it_says(kick: float) -> None:
 
 def test_kicks_differ_from_step_to_step_and_with_the_seed() -> None:
     def azimuths(seed: int) -> list[float]:
-        course = Course("load.force", (0.0, 1e-9), kick=1e-2, seed=seed)
+        course = Ramp("load.force", (0.0, 1e-9), kick=1e-2, seed=seed)
         steps = steps_of(PAIR, course, straight(PAIR), until=1e-5)
         tips = [steps[0].nodes[-1], steps[1].nodes[-1] - steps[0].nodes[-1]]
         return [math.atan2(tip[1], tip[0]) for tip in tips]
@@ -238,7 +238,7 @@ def test_kicks_differ_from_step_to_step_and_with_the_seed() -> None:
 
 def test_a_confined_model_stays_in_its_plane() -> None:
     flat = PAIR.with_(confined=True)
-    for step in steps_of(flat, Course("load.force", (7.0, 8.0), kick=0.2), kicked(flat)):
+    for step in steps_of(flat, Ramp("load.force", (7.0, 8.0), kick=0.2), kicked(flat)):
         assert step.verdict == "planar flapping"
         assert step.planarity == 0.0
         assert not step.shapes[..., 1].any()
@@ -246,14 +246,14 @@ def test_a_confined_model_stays_in_its_plane() -> None:
 
 def test_a_filament_is_stepped_along_a_parameter_that_is_no_force() -> None:
     filament = Filament(4, TipLoad(75.0))
-    course = Course("model.drag_ratio", (1.0, 1.5, 2.0))
+    course = Ramp("model.drag_ratio", (1.0, 1.5, 2.0))
     for step in steps_of(filament, course, kicked(filament), limit=2.0):
         assert step.verdict == "spinning"
         assert step.power_balance_error < 1e-5  # ten times rtol: errors of a step, added up
 
 
 def test_shapes_go_once_round_and_end_at_the_end() -> None:
-    step = steps_of(PAIR, Course("load.force", (8.0, 9.0)), kicked(PAIR, 0.1))[-1]
+    step = steps_of(PAIR, Ramp("load.force", (8.0, 9.0)), kicked(PAIR, 0.1))[-1]
     assert step.shapes.shape == (SHAPES, 3, 3)
     np.testing.assert_array_equal(step.shapes[-1], step.nodes)
     azimuth = np.unwrap(np.arctan2(step.shapes[:, -1, 1], step.shapes[:, -1, 0]))
@@ -279,7 +279,7 @@ def test_the_frequency_at_onset_is_two_over_pi() -> None:
     # Small displacements of both beads obey a matrix of trace 4 (F - 6) and determinant 16, so
     # that its eigenvalues at 6 K/L are +-4i: 4/(2 pi) cycles per T.
     forces = np.array([6.4, 6.7, 7.0])
-    steps = steps_of(PAIR, Course("load.force", tuple(forces)), kicked(PAIR, 0.1))
+    steps = steps_of(PAIR, Ramp("load.force", tuple(forces)), kicked(PAIR, 0.1))
     rates = [step.frequency for step in steps]
     # A parabola through three values, extended by twice their distance, to a part in a thousand.
     assert np.polyval(np.polyfit(forces, rates, 2), 6.0) == pytest.approx(2.0 / np.pi, rel=1e-3)
@@ -358,7 +358,7 @@ def stopping_after(count: int) -> Callable[..., Iterator[Step]]:
             if done == count:
                 signal.raise_signal(signal.SIGINT)
 
-        for step in settle_and_step(*given, progress=interrupt, **options):
+        for step in ramp(*given, progress=interrupt, **options):
             done += 1
             yield step
 
@@ -380,9 +380,9 @@ def test_an_interrupted_series_goes_on_to_the_same_end(
             5 - held,
         )
         assert f"interrupted after {held} of 5 steps; the same command goes on" in stopped[2]
-        assert load_steps("split/steps.nc").sizes["step"] == held
+        assert load_ramp("split/steps.nc").sizes["step"] == held
     assert answer(ask(*words))["missing"] == 0
-    same_but_for_seconds(load_steps("split/steps.nc"), series)
+    same_but_for_seconds(load_ramp("split/steps.nc"), series)
 
 
 def test_a_spent_budget_keeps_what_there_is(
@@ -398,7 +398,7 @@ def test_a_spent_budget_keeps_what_there_is(
     assert (again["status"], len(again["steps"])) == ("out of time", 3)
     assert Path(again["figure"]).exists()
     answer(ask(*words))
-    same_but_for_seconds(load_steps("cut/steps.nc"), series)
+    same_but_for_seconds(load_ramp("cut/steps.nc"), series)
 
 
 def test_an_interruption_before_the_first_step_leaves_nothing(
@@ -415,7 +415,7 @@ def test_what_is_stored_is_read_bit_for_bit(series: xr.Dataset, folder: Path) ->
     job_series = stepping.plan(
         read_step_input(None, [TWO[1], TWO[3]]), THROUGH[1], back=True, kick=1e-3, seed=1
     )
-    stepping.write_steps(Path("copy.nc"), job_series, steps)
+    stepping.write_ramp(Path("copy.nc"), job_series, steps)
     assert Path("copy.nc").read_bytes() == (folder / "steps.nc").read_bytes()
     assert json.loads(series.attrs["input"])["model"]["links"] == 2
     assert series["bending_energy_max"].attrs["units"] == "K"
@@ -477,7 +477,7 @@ def test_a_file_that_holds_no_steps_is_refused_and_can_be_replaced(ask: Ask, fol
         assert path.read_bytes() == content
     short = ["step", *TWO, "--along", "load.force=1:2:1", "--overwrite", "--out", "other"]
     assert ask(*short)[0] == 0
-    assert load_steps(path).sizes["step"] == 2
+    assert load_ramp(path).sizes["step"] == 2
 
 
 def test_a_folder_that_cannot_be_written_is_told_at_once(ask: Ask) -> None:
@@ -533,7 +533,7 @@ def drawn(figure: Any, name: str) -> list[Any]:
 
 
 def test_energies_are_filled_on_the_way_up_and_open_on_the_way_down(series: xr.Dataset) -> None:
-    figure = step_diagram([series], thresholds=[{"onset": 6.0, "beyond": 70.0}])
+    figure = ramp_diagram([series], thresholds=[{"onset": 6.0, "beyond": 70.0}])
     up, down = (drawn(figure, f"straight, {way}") for way in ("up", "down"))
     assert [line.get_xdata().tolist() for line in up] == [[4.0, 5.5]] * 2
     assert [line.get_xdata().tolist() for line in down] == [[5.5, 4.0]] * 2
@@ -552,7 +552,7 @@ def test_energies_are_filled_on_the_way_up_and_open_on_the_way_down(series: xr.D
 def test_several_series_are_columns_with_one_colour_a_verdict(series: xr.Dataset) -> None:
     other = series.copy(deep=True)
     other["verdict"] = ("step", np.array(["straight", "wobbling", "wobbling", "a", "b"]))
-    figure = step_diagram([series, other, series], title="three")
+    figure = ramp_diagram([series, other, series], title="three")
     panels = [axes for axes in figure.axes if axes.get_xlabel()]
     assert [axes.get_xlabel() for axes in panels] == ["force $F$  $[K/L]$"] * 3
     colours = {line.get_mfc() for line in drawn(figure, "wobbling, up") + drawn(figure, "a, down")}
@@ -565,7 +565,7 @@ def test_nothing_in_the_figure_covers_anything_else(series: xr.Dataset) -> None:
     other = series.copy(deep=True)
     other["verdict"] = ("step", np.array(["straight", "modulated non-planar flapping", *"abc"]))
     for datasets in ([series], [other, series], [other] * 5):
-        figure = step_diagram(datasets, thresholds=[{"onset": 6.0, "spinning-lost": 6.1}])
+        figure = ramp_diagram(datasets, thresholds=[{"onset": 6.0, "spinning-lost": 6.1}])
         figure.draw_without_rendering()
         cells = [axes.get_window_extent() for axes in figure.axes if axes.get_gid() == "cell"]
         panels = [axes.get_tightbbox() for axes in figure.axes if axes.get_xlabel()]
@@ -600,11 +600,11 @@ def test_a_planar_motion_is_seen_across_its_plane() -> None:
 
 
 def test_series_that_cannot_be_drawn_are_refused(series: xr.Dataset) -> None:
-    assert "datasets is empty" in complaint(lambda: step_diagram([]))
+    assert "datasets is empty" in complaint(lambda: ramp_diagram([]))
     other = series.assign_attrs(parameter="model.drag_ratio")
-    assert complaint(lambda: step_diagram([series, other])) == (
+    assert complaint(lambda: ramp_diagram([series, other])) == (
         "the series are along load.force and model.drag_ratio: give series along one parameter"
     )
     assert "lacks shapes: give a result of `undula step`" in complaint(
-        lambda: step_diagram([series.drop_vars("shapes")])
+        lambda: ramp_diagram([series.drop_vars("shapes")])
     )

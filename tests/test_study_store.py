@@ -31,7 +31,7 @@ from undula.inputs.build import build_model, build_start
 from undula.inputs.input import parse_input
 from undula.sweeps.blocks import MOST
 from undula.sweeps.point import point, points
-from undula.sweeps.store import load_study, open_study
+from undula.sweeps.store import load_sweep, open_study
 from undula.sweeps.work_queue import SweepWork
 
 RANDOM = QUICK + '[study]\npolicy = "random"\ntries = 2\n' + AXES
@@ -154,7 +154,7 @@ def test_a_line_of_solved_states_in_which_a_point_fails_keeps_the_others(
     def fails(*_: Any) -> None:
         raise ArithmeticError("no branch")
 
-    monkeypatch.setattr("undula.sweeps.point.solved_line", fails)
+    monkeypatch.setattr("undula.sweeps.point.stability_along_force", fails)
     found = done(study_of(tmp_path, SOLVED + AXES), tmp_path / "s.zarr")
     assert (found["status"] == 1).all()
 
@@ -173,7 +173,7 @@ def test_a_study_that_is_gone_on_with_again_and_again_is_the_same(
         calls += 1
     assert calls > 1
     at_once = done(study, tmp_path / "at-once.zarr")
-    assert differing(load_study(tmp_path / "pieces.zarr").load(), at_once) == []
+    assert differing(load_sweep(tmp_path / "pieces.zarr").load(), at_once) == []
 
 
 @pytest.mark.usefixtures("small_blocks")
@@ -213,7 +213,7 @@ def test_a_block_that_was_cut_short_while_it_was_written_is_done_again(
         patched.setattr(LocalStore, "set", cut_short)
         with pytest.raises(RuntimeError):
             work_off(SweepWork(store), study)
-    unfinished = load_study(tmp_path / "s.zarr")["status"].values
+    unfinished = load_sweep(tmp_path / "s.zarr")["status"].values
     assert (unfinished == 0).sum() >= 10 - 4 * (moment // 20)
     whole = done(study, tmp_path / "whole.zarr")
     assert differing(done(study, tmp_path / "s.zarr"), whole) == []
@@ -227,7 +227,7 @@ def test_a_full_disk_is_told_in_a_sentence_and_what_was_done_is_kept(
     store = open_study(tmp_path / "s.zarr", study)
     work = SweepWork(store)
     work_off(work, study, 2)
-    kept = load_study(store.path)["status"].values.sum()
+    kept = load_sweep(store.path)["status"].values.sum()
 
     async def full(*_: Any) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -238,7 +238,7 @@ def test_a_full_disk_is_told_in_a_sentence_and_what_was_done_is_kept(
     assert told == (
         f"the disk that holds {tmp_path} is full; free some space or choose another folder"
     )
-    assert load_study(store.path)["status"].values.sum() == kept > 0
+    assert load_sweep(store.path)["status"].values.sum() == kept > 0
 
 
 def test_failing_points_are_recorded_and_done_again_on_request_only(tmp_path: Path) -> None:
@@ -325,11 +325,11 @@ def test_the_store_of_another_study_or_version_is_refused(
 
 def test_what_is_no_store_is_refused(tmp_path: Path) -> None:
     study = study_of(tmp_path, RANDOM)
-    assert "there is no study" in complaint(lambda: load_study(tmp_path / "none"))
+    assert "there is no study" in complaint(lambda: load_sweep(tmp_path / "none"))
     for other in (tmp_path, tmp_path / "study.toml"):
         assert "is no stored study" in complaint(lambda other=other: open_study(other, study))
     xr.Dataset({"a": 1}).to_zarr(tmp_path / "other.zarr", zarr_format=2)
-    assert "has the format None" in complaint(lambda: load_study(tmp_path / "other.zarr"))
+    assert "has the format None" in complaint(lambda: load_sweep(tmp_path / "other.zarr"))
 
 
 def test_thousands_of_points_make_few_files(tmp_path: Path) -> None:

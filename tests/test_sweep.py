@@ -21,7 +21,7 @@ from small_studies import AXES, QUICK, differing
 from undula.app.cli import main
 from undula.sweeps import own_workers
 from undula.sweeps import workers as pool_module
-from undula.sweeps.store import load_study, open_study
+from undula.sweeps.store import load_sweep, open_study
 from undula.sweeps.sweep import read_study
 from undula.sweeps.work_queue import SweepWork
 from undula.sweeps.workers import DiedError, pool
@@ -77,7 +77,7 @@ def answered(command: subprocess.Popen[str], status: int = 0) -> dict[str, Any]:
 
 
 def done_points(store: Path) -> int:
-    return int((load_study(store)["status"].values != 0).sum()) if store.exists() else 0
+    return int((load_sweep(store)["status"].values != 0).sum()) if store.exists() else 0
 
 
 def wait_for(condition: Callable[[], bool], command: subprocess.Popen[str]) -> None:
@@ -116,7 +116,7 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Data
     folder = tmp_path_factory.mktemp("undisturbed")
     file, store = written(folder, LONGER), folder / "s.zarr"
     answered(started("undula", "sweep", file, "--workers", "2", "--out", store, "--json"))
-    return file, load_study(store).load()
+    return file, load_sweep(store).load()
 
 
 def test_a_sweep_answers_with_one_object(swept: tuple[Path, dict[str, Any]]) -> None:
@@ -204,7 +204,7 @@ def test_a_budget_and_ctrl_c_leave_a_study_that_goes_on(
     counts = json.loads(said)["points"]
     assert 0 < counts["to_go"] < counts["all"] == whole["status"].size
     assert answered(started("undula", *words))["status"] == "done"
-    assert differing(load_study(tmp_path / "s.zarr").load(), whole) == []
+    assert differing(load_sweep(tmp_path / "s.zarr").load(), whole) == []
 
 
 @pytest.mark.slow
@@ -230,7 +230,7 @@ def test_killed_workers_and_a_killed_driver_change_nothing(
     assert 0 < before < whole["status"].size
     answer = answered(started("undula", *words))
     assert answer["points"]["done"] == whole["status"].size
-    assert differing(load_study(store).load(), whole) == []
+    assert differing(load_sweep(store).load(), whole) == []
 
 
 @contextmanager
@@ -286,7 +286,7 @@ def test_the_same_holds_with_a_scheduler_and_workers_of_their_own(
         command.communicate(timeout=PATIENCE)
         assert 0 < done_points(store) < whole["status"].size
         assert answered(started("undula", *words))["status"] == "done"
-    assert differing(load_study(store).load(), whole) == []
+    assert differing(load_sweep(store).load(), whole) == []
 
 
 def test_a_point_that_kills_its_workers_is_found_and_recorded(tmp_path: Path) -> None:
@@ -300,7 +300,7 @@ def test_a_point_that_kills_its_workers_is_found_and_recorded(tmp_path: Path) ->
         else:
             work.take_back(piece, [{"status": 1, "seconds": 0.2}] * len(piece.numbers))
     work.save()
-    stored = load_study(tmp_path / "s.zarr")
+    stored = load_sweep(tmp_path / "s.zarr")
     assert stored["status"].values.ravel().tolist() == [1, 1, 1, 2, 1, 1, 1, 1, 1, 1]
     assert "every worker died" in str(stored["reason"].values.ravel()[3])
     # In the second piece, of five; in a half of it, of two; and twice alone.
@@ -339,7 +339,7 @@ def test_help_on_sweeps_loads_nothing_heavy(name: str) -> None:
 
 
 def test_a_store_tells_the_version_that_made_it(swept: tuple[Path, dict[str, Any]]) -> None:
-    attributes = load_study(swept[0].parent / "s.zarr").attrs
+    attributes = load_sweep(swept[0].parent / "s.zarr").attrs
     assert attributes["software"] == version("undula")
     assert json.loads(attributes["versions"])["undula"] == version("undula")
     assert json.loads(attributes["study"])["study"]["axes"][0] == {

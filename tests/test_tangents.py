@@ -32,7 +32,7 @@ from undula.numerics.integration.stepper_state import (
     PLANNED_ORDER,
     REJECTED,
     STEPS,
-    Memory,
+    StepperState,
     start,
 )
 from undula.numerics.integration.system import derivative_half_bandwidth
@@ -47,7 +47,12 @@ EXACTLY = {"rtol": 1e-11, "atol": 1e-11}
 
 
 def take_steps(
-    loop: Callable[..., int], system: Any, memory: Memory, told: Options, changes: Array, count: int
+    loop: Callable[..., int],
+    system: Any,
+    memory: StepperState,
+    told: Options,
+    changes: Array,
+    count: int,
 ) -> None:
     n = changes.shape[2]
     band = np.zeros((n, 2 * derivative_half_bandwidth(type(system)) + 1))
@@ -59,7 +64,7 @@ def take_steps(
 
 
 def on_its_way(
-    loop: Callable[..., int], system: Any, memory: Memory, told: Options, changes: Array
+    loop: Callable[..., int], system: Any, memory: StepperState, told: Options, changes: Array
 ) -> None:
     """Take some steps of one length and order, some of another length, some of a higher order."""
     take_steps(loop, system, memory, told, changes, 6)
@@ -72,7 +77,7 @@ def on_its_way(
 
 
 def difference_of_runs(
-    loop: Callable[..., int], system: Any, memory: Memory, told: Options, change: Array
+    loop: Callable[..., int], system: Any, memory: StepperState, told: Options, change: Array
 ) -> Array:
     """Return the change of all backward differences between two runs a small change apart."""
     n, ends, size = change.shape[1], [], 1e-5
@@ -84,7 +89,9 @@ def difference_of_runs(
     return (ends[0] - ends[1]) / (2.0 * size)
 
 
-def disagreement(loop: Callable[..., int], system: Any, memory: Memory, told: Options) -> float:
+def disagreement(
+    loop: Callable[..., int], system: Any, memory: StepperState, told: Options
+) -> float:
     """Return by how much carried changes of positions differ from differences of runs, relative."""
     changes = np.zeros((2, memory.differences.shape[0], told.mask.size))
     # Any change of the past will do; its higher differences are the smaller ones.
@@ -129,7 +136,7 @@ def test_changes_are_the_derivative_of_the_steps_of_models(model: Model) -> None
     assert disagreement(advance_with_changes, model.system, memory, told) < 1e-6
 
 
-def under_way(model: Model) -> tuple[Memory, Options]:
+def under_way(model: Model) -> tuple[StepperState, Options]:
     """Return the memory of a stepper of the third order that has come some way, and its options."""
     x = un.kicked(model, 0.5)
     told = Schedule(until=1.0, rtol=1e-5).options(model)._replace(frame=0)

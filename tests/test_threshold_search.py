@@ -4,7 +4,7 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.solvers.criticality import born_downwards
+from undula.analysis.solvers.criticality import is_subcritical
 from undula.analysis.solvers.thresholds import threshold, threshold_curve
 from undula.app.cli import main
 
@@ -72,10 +72,10 @@ def test_a_curve_ends_its_searches_where_it_is_told_to() -> None:
 
 
 def test_a_branch_that_is_born_downwards_is_searched_from_its_fold_on() -> None:
-    onset = un.critical_force(LOW, method="discrete").force
+    onset = un.onset(LOW, method="discrete").force
     assert onset is not None
-    assert born_downwards(LOW, "spinning")
-    assert not born_downwards(LOW, "flapping")
+    assert is_subcritical(LOW, "spinning")
+    assert not is_subcritical(LOW, "flapping")
     reached: list[float] = []
     found = threshold(
         LOW, "spinning-lost", up_to=0.99 * onset, progress=lambda _, force: reached.append(force)

@@ -8,7 +8,7 @@ import pytest
 import undula as un
 from refusal import complaint
 from undula.analysis.solvers.flapping import find_flapping
-from undula.analysis.solvers.refind import found_again, limit_of
+from undula.analysis.solvers.refind import limit_of, refind_bifurcation
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.thresholds import THRESHOLDS, Threshold, threshold, threshold_curve
 from undula.analysis.states.extrapolation import extrapolated
@@ -32,7 +32,7 @@ def value_of(found: Threshold) -> float:
 
 
 def test_the_onset_is_that_of_the_straight_state() -> None:
-    onset, found = un.critical_force(EIGHT), of_eight("onset")
+    onset, found = un.onset(EIGHT), of_eight("onset")
     # A search for later crossings too has a larger pencil: same root, other round-off.
     assert found.value == pytest.approx(onset.force, rel=1e-12)
     assert found.frequency == pytest.approx(onset.frequency, rel=1e-12)
@@ -220,7 +220,7 @@ def test_many_links_are_reached_from_few(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_bifurcation_moves_to_other_links_though_it_is_not_near() -> None:
     known = of_eight("spinning-lost").at
     assert known is not None
-    again = found_again(known, EIGHT.with_(segments=16), "load.force", lambda one: one.loses)
+    again = refind_bifurcation(known, EIGHT.with_(segments=16), "load.force", lambda one: one.loses)
     assert not isinstance(again, NotFound)
     # A fifth higher: beyond the nearest surroundings that are looked through first.
     assert again.value > 1.1 * known.value
@@ -237,7 +237,7 @@ def test_a_bifurcation_at_the_edge_of_a_range_is_found_again_within_it() -> None
     branch = un.follow(state, "model.drag_ratio", 1.0)
     (known,) = branch.bifurcations
     assert known.value == pytest.approx(1.02, abs=1e-6)
-    again = found_again(
+    again = refind_bifurcation(
         known, EIGHT.with_(force=value_of(near_one)), "model.drag_ratio", lambda _: True
     )
     assert not isinstance(again, NotFound)

@@ -202,8 +202,8 @@ def test_two_links_are_straight_at_four_per_length_of_chain_and_spin_at_four_per
 def test_chains_tend_to_the_filament_of_their_further_units_as_one_over_links() -> None:
     links = np.array([50, 100, 200])
     chains = [un.Chain(int(count), un.TipLoad(1.0)) for count in links]
-    onsets = [un.critical_force(chain) for chain in chains]
-    filament = un.critical_force(FEW, method="spectral")
+    onsets = [un.onset(chain) for chain in chains]
+    filament = un.onset(FEW, method="spectral")
     forces = [
         chain.units.force_in(onset.force)["B/L^2"]
         for chain, onset in zip(chains, onsets, strict=True)
@@ -294,7 +294,7 @@ def drawn(name: str, model: Any) -> Figure:
         "growth": lambda: growth_figure(growth, **told),
         "maps": lambda: growth_figure(un.growth_curve(model, [1.0, 5.0], **maps), **told),
         "stability": lambda: stability_portrait(
-            un.critical_force(model), growth, un.spectrum(model), **told
+            un.onset(model), growth, un.spectrum(model), **told
         ),
         "thresholds": lambda: threshold_figure(curve, **told),
         "several": lambda: threshold_curves(lines, parameter=curve.parameter, **told),

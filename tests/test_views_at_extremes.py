@@ -20,7 +20,7 @@ from undula.models.description import model_words
 from undula.views import portrait
 from undula.views.common import style
 from undula.views.common.verdict_styles import _LOOKS, look_of
-from undula.views.ramp.figure import step_diagram
+from undula.views.ramp.figure import ramp_diagram
 from undula.views.run.traces import limits
 
 NODES = 9
@@ -137,7 +137,7 @@ def test_every_verdict_has_its_own_look_and_the_same_colour_in_every_figure() ->
     assert "modulated spinning" in given
     assert given <= _LOOKS.keys()
     assert len({look.marker + look.colour for look in _LOOKS.values()}) == len(_LOOKS)
-    figure = step_diagram([series(VERDICTS)])
+    figure = ramp_diagram([series(VERDICTS)])
     for verdict in VERDICTS:
         lines = [line for axes in figure.axes for line in axes.lines]
         colours = {line.get_mfc() for line in lines if line.get_gid() == f"{verdict}, up"}
@@ -165,7 +165,7 @@ def series(verdicts: list[str]) -> xr.Dataset:
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_the_legend_of_steps_stays_on_the_page_and_covers_nothing(count: int) -> None:
     thresholds = [{"onset": 7.0, "spinning-lost": 30.0}] * count
-    figure = step_diagram([series(["straight", *VERDICTS])] * count, thresholds=thresholds)
+    figure = ramp_diagram([series(["straight", *VERDICTS])] * count, thresholds=thresholds)
     figure.draw_without_rendering()
     (legend,) = figure.legends
     named = {text.get_text() for text in legend.get_texts()}

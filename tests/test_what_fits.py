@@ -11,7 +11,7 @@ import pytest
 import undula as un
 from refusal import complaint
 from small_studies import study_of
-from undula.analysis.ramps.ramp import MOST_STEPS, Course
+from undula.analysis.ramps.ramp import MOST_STEPS, Ramp
 from undula.analysis.run_settings import MOST_SAMPLES, Schedule
 from undula.analysis.runs import memory_needed as room
 from undula.analysis.runs.integrate import Progress
@@ -128,7 +128,7 @@ def test_tries_values_and_steps_have_ends_that_are_told(tmp_path: Path) -> None:
     assert f"{MOST_POINTS}" in complaint(lambda: study_of(tmp_path, AXES.format(count=3), *random))
     assert f"{MOST_POINTS}" in complaint(lambda: study_of(tmp_path, AXES.format(count=10**7)))
     assert f"{MOST_STEPS}" in complaint(lambda: parse_steps("--along", "load.force=0:1e9:1"))
-    assert f"{MOST_STEPS}" in complaint(lambda: Course("load.force", (1.0,) * (MOST_STEPS + 1)))
+    assert f"{MOST_STEPS}" in complaint(lambda: Ramp("load.force", (1.0,) * (MOST_STEPS + 1)))
     assert "1000000" in complaint(lambda: parse_values("--forces", "0:1:10000000"))
     assert "1000000" in complaint(lambda: parse_values("--forces", "1," * 10**6 + "1"))
     for segments in (2001, 10**8, True):

@@ -258,9 +258,9 @@ def period_of(time: Array, angle: Array) -> tuple[float, float]:
 def test_the_force_at_which_the_base_passes_pi_is_the_one_at_which_the_other_spring_folds() -> None:
     for force, beyond in ((12.0, False), (12.5, True)):
         model, folding = two(force), two(force, "angle")
-        winds = un.integrate(model, un.planar(model, 0.3), until=15.0).health
+        unwrapped = un.integrate(model, un.planar(model, 0.3), until=15.0).health
         folds = un.integrate(folding, un.planar(folding, 0.3), until=15.0).health
-        assert (winds.largest_joint_angle > np.pi) is beyond
+        assert (unwrapped.largest_joint_angle > np.pi) is beyond
         assert folds.folded is beyond
 
 

@@ -27,7 +27,7 @@ from undula.sweeps import own_workers
 from undula.sweeps import workers as pool_module
 from undula.sweeps.own_workers import TAKES, workers_that_fit
 from undula.sweeps.point import line, points
-from undula.sweeps.store import load_study, open_study
+from undula.sweeps.store import load_sweep, open_study
 from undula.sweeps.sweep import Study
 from undula.sweeps.work_queue import SweepWork
 from undula.sweeps.workers import LostError, Pool, pool
@@ -72,7 +72,7 @@ def swept(workers: Pool, study: Study, path: Path) -> xr.Dataset:
         for piece, (_, records) in workers.come_back(0.2):
             work.take_back(piece, records)
     work.save()
-    return load_study(path).load()
+    return load_sweep(path).load()
 
 
 # ---------------------------------------------------------------- whatever is documented for sweeps
@@ -360,7 +360,7 @@ def test_of_sweeps_that_begin_together_one_goes_on_and_the_other_says_so(tmp_pat
     assert refused == (
         f"undula: another undula sweep is at work on {store}; wait for it, or give another --out\n"
     )
-    assert set(load_study(store)["status"].values.ravel()) == {1}
+    assert set(load_sweep(store)["status"].values.ravel()) == {1}
 
 
 ENDLESS = QUICK.replace("0.05", "50.0") + '[study]\npolicy = "random"\ntries = 100\n' + AXES
@@ -401,5 +401,5 @@ def test_a_sweep_that_is_ended_keeps_all_also_while_workers_start(
     assert len(lines) == 1, told
     assert lines[0].startswith("undula: the study was interrupted with")
     counts = answer["points"]
-    assert counts["done"] == int((load_study(store)["status"].values == 1).sum())
+    assert counts["done"] == int((load_sweep(store)["status"].values == 1).sum())
     assert psutil.wait_procs(children, timeout=PATIENCE)[1] == []

@@ -5,6 +5,7 @@ in with `find_spinning` and `find_flapping`; see docs/index.md.
 Each name is imported when it is first asked for, so that the command line answers at once.
 """
 
+import warnings
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -13,25 +14,25 @@ if TYPE_CHECKING:
     import undula.views as views
     from undula.analysis.linear.stability import (
         critical_curve,
-        critical_force,
         growth_curve,
+        onset,
         spectrum,
     )
     from undula.analysis.maps.basins import basins
-    from undula.analysis.maps.contradictions import disagreements
-    from undula.analysis.maps.stability_along_force import solved_line
-    from undula.analysis.maps.stability_boundaries import solved_borders
+    from undula.analysis.maps.contradictions import contradictions
+    from undula.analysis.maps.stability_along_force import stability_along_force
+    from undula.analysis.maps.stability_boundaries import stability_boundaries
     from undula.analysis.regimes.lyapunov import lyapunov
     from undula.analysis.runs.dataset import dataset_of
     from undula.analysis.runs.integrate import integrate
     from undula.analysis.runs.run import Run
-    from undula.analysis.solvers.criticality import births
+    from undula.analysis.solvers.criticality import criticality
     from undula.analysis.solvers.equilibrium import Equilibrium, find_equilibrium
     from undula.analysis.solvers.flapping import find_flapping
-    from undula.analysis.solvers.periodic_orbits import follow_born
+    from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
     from undula.analysis.solvers.periodic_search import find_periodic
     from undula.analysis.solvers.spinning import find_spinning
-    from undula.analysis.solvers.state_kinds import converged, follow, follow_from_onset
+    from undula.analysis.solvers.state_kinds import extrapolate, follow, follow_from_onset
     from undula.analysis.solvers.thresholds import threshold, threshold_curve
     from undula.analysis.states.periodic_record import Periodic
     from undula.analysis.states.records import Flapping, Spinning
@@ -44,10 +45,10 @@ if TYPE_CHECKING:
     from undula.models.loads.user_density import ProfileLoad, TableLoad
     from undula.models.natural_curvature import CurvatureTable
     from undula.models.scales import Scales
-    from undula.storage.ramp_file import load_steps
+    from undula.storage.ramp_file import load_ramp
     from undula.storage.run_file import load_result
     from undula.storage.unchecked import StoredWarning
-    from undula.sweeps.store import load_study
+    from undula.sweeps.store import load_sweep
 
 _HOMES = {
     "BeadLoad": "undula.models.loads.beads",
@@ -70,18 +71,18 @@ _HOMES = {
     "TableLoad": "undula.models.loads.user_density",
     "TipLoad": "undula.models.loads.analytic",
     "basins": "undula.analysis.maps.basins",
-    "births": "undula.analysis.solvers.criticality",
-    "converged": "undula.analysis.solvers.state_kinds",
+    "criticality": "undula.analysis.solvers.criticality",
+    "extrapolate": "undula.analysis.solvers.state_kinds",
     "critical_curve": "undula.analysis.linear.stability",
-    "critical_force": "undula.analysis.linear.stability",
+    "onset": "undula.analysis.linear.stability",
     "dataset_of": "undula.analysis.runs.dataset",
-    "disagreements": "undula.analysis.maps.contradictions",
+    "contradictions": "undula.analysis.maps.contradictions",
     "find_equilibrium": "undula.analysis.solvers.equilibrium",
     "find_flapping": "undula.analysis.solvers.flapping",
     "find_periodic": "undula.analysis.solvers.periodic_search",
     "find_spinning": "undula.analysis.solvers.spinning",
     "follow": "undula.analysis.solvers.state_kinds",
-    "follow_born": "undula.analysis.solvers.periodic_orbits",
+    "follow_from_bifurcation": "undula.analysis.solvers.periodic_orbits",
     "follow_from_onset": "undula.analysis.solvers.state_kinds",
     "from_state": "undula.models.initial_states",
     "growth_curve": "undula.analysis.linear.stability",
@@ -89,13 +90,13 @@ _HOMES = {
     "integrate": "undula.analysis.runs.integrate",
     "kicked": "undula.models.initial_states",
     "load_result": "undula.storage.run_file",
-    "load_steps": "undula.storage.ramp_file",
-    "load_study": "undula.sweeps.store",
+    "load_ramp": "undula.storage.ramp_file",
+    "load_sweep": "undula.sweeps.store",
     "lyapunov": "undula.analysis.regimes.lyapunov",
     "mode": "undula.models.initial_states",
     "planar": "undula.models.initial_states",
-    "solved_borders": "undula.analysis.maps.stability_boundaries",
-    "solved_line": "undula.analysis.maps.stability_along_force",
+    "stability_boundaries": "undula.analysis.maps.stability_boundaries",
+    "stability_along_force": "undula.analysis.maps.stability_along_force",
     "spectrum": "undula.analysis.linear.stability",
     "straight": "undula.models.initial_states",
     "threshold": "undula.analysis.solvers.thresholds",
@@ -125,34 +126,34 @@ __all__ = [
     "TableLoad",
     "TipLoad",
     "basins",
-    "births",
-    "converged",
+    "contradictions",
     "critical_curve",
-    "critical_force",
+    "criticality",
     "dataset_of",
-    "disagreements",
+    "extrapolate",
     "find_equilibrium",
     "find_flapping",
     "find_periodic",
     "find_spinning",
     "follow",
-    "follow_born",
+    "follow_from_bifurcation",
     "follow_from_onset",
     "from_state",
     "growth_curve",
     "helix",
     "integrate",
     "kicked",
+    "load_ramp",
     "load_result",
-    "load_steps",
-    "load_study",
+    "load_sweep",
     "lyapunov",
     "mode",
     "observables",
+    "onset",
     "planar",
-    "solved_borders",
-    "solved_line",
     "spectrum",
+    "stability_along_force",
+    "stability_boundaries",
     "straight",
     "threshold",
     "threshold_curve",
@@ -160,7 +161,26 @@ __all__ = [
 ]
 
 
+#: Names of earlier versions, which go with the next one.
+_RENAMED = {
+    "births": "criticality",
+    "converged": "extrapolate",
+    "critical_force": "onset",
+    "disagreements": "contradictions",
+    "follow_born": "follow_from_bifurcation",
+    "load_steps": "load_ramp",
+    "load_study": "load_sweep",
+    "solved_borders": "stability_boundaries",
+    "solved_line": "stability_along_force",
+}
+
+
 def __getattr__(name: str) -> Any:
+    if name in _RENAMED:
+        new = _RENAMED[name]
+        message = f"undula.{name} is now undula.{new}; the old name goes with the next release"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return __getattr__(new)
     if name in _ROOMS:
         return import_module(_ROOMS[name])
     if name not in _HOMES:

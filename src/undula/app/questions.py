@@ -13,7 +13,7 @@ from undula.errors import InputError
 
 if TYPE_CHECKING:
     from undula.storage.outputs import Claim
-    from undula.terminal.output import Told
+    from undula.terminal.output import Answer
 
 
 def stability(
@@ -217,7 +217,7 @@ def threshold(
 
 
 def _reply(
-    told: "Told",
+    told: "Answer",
     figure: Path | None,
     save: Callable[[Path], None] | None = None,
     *,
@@ -241,7 +241,7 @@ def _reply(
     return status
 
 
-def _ended(told: "Told") -> int:
+def _ended(told: "Answer") -> int:
     """Return the exit status, having said so if Ctrl-C ended the search before its end."""
     from undula.terminal.output import DONE, STOPPED_EARLY, notice
 
@@ -259,7 +259,7 @@ def _end_of_search(up_to: float | None) -> float | None:
     return up_to
 
 
-def _with_figure(told: "Told", figure: Path | None) -> "Told":
+def _with_figure(told: "Answer", figure: Path | None) -> "Answer":
     """Return what is told with the name of the figure that shows it, null without one."""
     text = told.text if figure is None else f"{told.text}\n  figure  {figure}"
     answer = told.answer | {"figure": None if figure is None else str(figure)}

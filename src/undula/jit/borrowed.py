@@ -15,7 +15,7 @@ from numba.extending import intrinsic, overload
 from undula.jit.compilation import RESOLVED
 
 
-def lent(record: Any) -> Any:
+def borrowed(record: Any) -> Any:
     """Return a record (a `typing.NamedTuple`) whose arrays have no count; an array likewise."""
     return record
 
@@ -33,13 +33,13 @@ def _uncounted(typing_context: Any, array: Any) -> Any:  # noqa: ARG001
 _without_count: Any = intrinsic(_uncounted)
 
 
-@overload(lent, strict=False, jit_options=RESOLVED)
-def _lent(record: Any) -> Any:
+@overload(borrowed, strict=False, jit_options=RESOLVED)
+def _borrowed(record: Any) -> Any:
     if isinstance(record, types.Array):
         return lambda record: _without_count(record)
     if isinstance(record, types.NamedTuple | types.NamedUniTuple):
-        fields = ", ".join(f"lent(record.{name})" for name in record.fields)
-        namespace = {"lent": lent, "Record": record.instance_class}
+        fields = ", ".join(f"borrowed(record.{name})" for name in record.fields)
+        namespace = {"borrowed": borrowed, "Record": record.instance_class}
         exec(f"def rebuilt(record): return Record({fields})", namespace)
         return cast("Any", namespace["rebuilt"])
     return lambda record: record

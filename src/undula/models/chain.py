@@ -20,7 +20,13 @@ from undula.arrays import Array, Links
 from undula.errors import InputError, is_number
 from undula.models.linked_rod import LinkedRod
 from undula.models.loads.analytic import Load
-from undula.models.rod.tables import FoldingPlanarRod, FoldingSpatialRod, PlainRod, Rod, WindingRod
+from undula.models.rod.tables import (
+    FoldingPlanarRod,
+    FoldingSpatialRod,
+    PlainRod,
+    Rod,
+    UnwrappedRod,
+)
 from undula.models.units import Units, chain_units
 
 MOST_LINKS = 1000
@@ -107,12 +113,12 @@ class Chain(LinkedRod):
         joint = np.ones(self.links)
         joint[0] = self.base_spring
         weight: Links = np.ones(self.links) * self.bead_drag
-        head, foot = self.load.shares(self.links)
+        outer_force, inner_force = self.load.shares(self.links)
         rod: type[PlainRod] = FoldingPlanarRod if self.confined else FoldingSpatialRod
         if self.spring == "unwrapped":
-            rod = WindingRod
-        lag = 1.0 - 1.0 / self.drag_ratio
-        return rod(joint, weight, head, foot, 1.0 / self.links, lag, math.inf)
+            rod = UnwrappedRod
+        anisotropy = 1.0 - 1.0 / self.drag_ratio
+        return rod(joint, weight, outer_force, inner_force, 1.0 / self.links, anisotropy, math.inf)
 
     @property
     def units(self) -> Units:

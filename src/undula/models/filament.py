@@ -20,9 +20,9 @@ from undula.models.natural_curvature import (
     refuse_beyond_pi,
 )
 from undula.models.rod.tables import (
+    DirectedRod,
     ExtensiblePlanarRod,
     ExtensibleSpatialRod,
-    FramedRod,
     PlainRod,
     PlanarRod,
     Rod,
@@ -136,11 +136,11 @@ class Filament(LinkedRod):
                 raise InputError(f"{name} = {value!r} has to be a positive finite number")
         if self.twist not in ("paper", "rigid", "elastic"):
             raise InputError(f"twist = {self.twist!r} has to be 'paper', 'rigid' or 'elastic'")
-        if not self.framed:
+        if not self.material_frame:
             return
         refuse_beyond_pi(self.natural_curvature, self.segments, MOST_SEGMENTS)
         what = "natural_curvature" if self.piece_curvature.any() else "bending_ratio"
-        what = what if self.held else "keep_directors"
+        what = what if self.without_rotational_symmetry else "keep_directors"
         for other, wanted in (("confined", False), ("inextensibility", "exact")):
             if getattr(self, other) != wanted:
                 raise InputError(
@@ -157,14 +157,14 @@ class Filament(LinkedRod):
         return of_pieces(self.natural_curvature, self.segments)
 
     @property
-    def held(self) -> bool:
+    def without_rotational_symmetry(self) -> bool:
         """Whether its directors matter: it is naturally curved, or bends not alike about them."""
         return self.bending_ratio != 1.0 or bool(self.piece_curvature.any())
 
     @property
-    def framed(self) -> bool:
+    def material_frame(self) -> bool:
         """Whether directors are among its unknowns; the clamp holds the first: no turns then."""
-        return self.keep_directors or self.held
+        return self.keep_directors or self.without_rotational_symmetry
 
     @cached_property
     def system(self) -> Rod:
@@ -172,23 +172,26 @@ class Filament(LinkedRod):
         n, h = self.segments, 1.0 / self.segments
         joint, weight = np.full(n, 1.0 / h), np.full(n, h)
         joint[0], weight[-1] = 2.0 / h, 0.5 * h
-        head, foot = self.load.shares(n)
+        outer_force, inner_force = self.load.shares(n)
         tensile = math.inf if self.inextensibility == "exact" else self.tensile_stiffness
-        tables = (joint, weight, head, foot, h, 1.0 - 1.0 / self.drag_ratio, tensile)
-        if not self.framed:
+        tables = (joint, weight, outer_force, inner_force, h, 1.0 - 1.0 / self.drag_ratio, tensile)
+        if not self.material_frame:
             return _RODS[self.inextensibility, self.confined](*tables)
-        natural, tip = self.piece_curvature[:-1] / joint[:, None], self._last_direction(head, foot)
+        natural, tip = (
+            self.piece_curvature[:-1] / joint[:, None],
+            self._last_direction(outer_force, inner_force),
+        )
         compliance = 1.0 / self.twist_stiffness if self.twist == "elastic" else 0.0
         transmitted = 0.0 if self.twist == "paper" else 1.0
-        return FramedRod(*tables, natural, self.bending_ratio, compliance, transmitted, tip)
+        return DirectedRod(*tables, natural, self.bending_ratio, compliance, transmitted, tip)
 
-    def _last_direction(self, head: Links, foot: Links) -> Array:
+    def _last_direction(self, outer_force: Links, inner_force: Links) -> Array:
         """Return the tangent where the last link's load acts, (3,) on its directors and tangent.
 
         Nothing bends the filament there, so that it is curved as it is by nature.
         """
-        total = head[-1] + foot[-1]
-        beyond = np.clip(head[-1] / total, 0.0, 1.0) - 0.5 if total != 0.0 else 0.0
+        total = outer_force[-1] + inner_force[-1]
+        beyond = np.clip(outer_force[-1] / total, 0.0, 1.0) - 0.5 if total != 0.0 else 0.0
         turn = beyond / self.segments * self.piece_curvature[-1]
         angle = np.hypot(*turn)
         aside = np.sinc(angle / np.pi) * turn
@@ -205,16 +208,20 @@ class Filament(LinkedRod):
         return FILAMENT_UNITS
 
     @property
-    def continuum(self) -> DensityLoad | None:
+    def continuum_load(self) -> DensityLoad | None:
         """The load of the inextensible filament that rigid links stand for; None for weak ones.
 
         None as well where the straight filament is no equilibrium or bends not alike.
         """
-        return self.load if self.inextensibility == "exact" and not self.held else None
+        return (
+            self.load
+            if self.inextensibility == "exact" and not self.without_rotational_symmetry
+            else None
+        )
 
     def linearised(self) -> tuple[Array, Array]:
         """Return stiffness and drag (N, N) of small displacements of the straight filament."""
-        if self.held:
+        if self.without_rotational_symmetry:
             raise InputError(
                 "small motions about the straight state are those of a filament without natural"
                 " curvature that bends alike about both directors: use natural_curvature = (0, 0)"
@@ -225,7 +232,7 @@ class Filament(LinkedRod):
 
     def rest(self) -> State:
         """Return the state in which nothing is bent, the equilibrium without a load."""
-        if not isinstance(self.system, FramedRod):
+        if not isinstance(self.system, DirectedRod):
             return self.straight()
         tangents = np.cumsum(unbent_links(self.system.natural), axis=0)
         return self.from_nodes(np.concatenate([np.zeros((1, 3)), tangents]) * self.system.link)
@@ -246,7 +253,7 @@ class Filament(LinkedRod):
         round-off; d1 is e_x at the clamp. `unknowns` (..., n) are the integrator's.
         """
         turns = np.zeros((*unknowns.shape[:-1], self.links))
-        if isinstance(self.system, FramedRod):
+        if isinstance(self.system, DirectedRod):
             twist = self.system.compliance * self.system.link * self.twist_moments(unknowns)
             turns[..., 1:] = np.cumsum(twist, axis=-1)[..., :-1]
         return directors_of(self.nodes(self.positions(unknowns)), turns)
@@ -257,7 +264,7 @@ class Filament(LinkedRod):
         The `paper` has them dropped from the forces; they are what it would take.
         """
         by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self._stride)
-        if isinstance(self.system, FramedRod):
+        if isinstance(self.system, DirectedRod):
             return np.asarray(by_node[..., -1])
         return np.zeros(by_node.shape[:-1])
 

@@ -13,7 +13,7 @@ from undula.models.loads.analytic import DensityLoad
 from undula.models.model import Energetics
 from undula.models.rod.dae import RodFlow
 from undula.models.rod.link_lengths import admissible, straight
-from undula.models.rod.tables import FramedRod, WindingRod
+from undula.models.rod.tables import DirectedRod, UnwrappedRod
 from undula.models.rod.velocity import observe, rate_of_change
 from undula.numerics.integration.system import RATES
 from undula.numerics.linalg.banded import to_dense
@@ -43,14 +43,14 @@ class LinkedRod(ABC):
         return self.equations.stride
 
     @property
-    def winds(self) -> bool:
+    def unwrapped(self) -> bool:
         """Whether joints wind up beyond pi, instead of folding there."""
-        return isinstance(self.system, WindingRod)
+        return isinstance(self.system, UnwrappedRod)
 
     @property
     def axisymmetric(self) -> bool:
         """Whether no direction across the axis is singled out: all motions can be turned."""
-        return not isinstance(self.system, FramedRod)
+        return not isinstance(self.system, DirectedRod)
 
     @property
     def extensible(self) -> bool:
@@ -60,7 +60,7 @@ class LinkedRod(ABC):
     @property
     def balances(self) -> bool:
         """Whether the equations keep account of all energy: not where twist moments are dropped."""
-        return not isinstance(self.system, FramedRod) or self.system.transmitted != 0.0
+        return not isinstance(self.system, DirectedRod) or self.system.transmitted != 0.0
 
     @property
     def size(self) -> int:
@@ -154,7 +154,7 @@ class LinkedRod(ABC):
         joints wind up, and else between 0 and pi.
         """
         by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self._stride)
-        if self.winds:
+        if self.unwrapped:
             return by_node[..., -1]
         # Coordinate by coordinate: an array for each is much faster than one for all.
         along = [np.diff(by_node[..., a], axis=-1, prepend=0.0) for a in range(self.dimension)]
@@ -169,7 +169,7 @@ class LinkedRod(ABC):
             together += (outer + inner) ** 2
         return np.asarray(2.0 * np.arctan2(np.sqrt(apart), np.sqrt(together)))
 
-    def departure(self, x: State) -> float:
+    def tangent_distance(self, x: State) -> float:
         """Return the root mean square difference of the tangents from straight [rad]."""
         away = np.reshape(x - self.straight(), (self.links, self.dimension))
         return float(np.linalg.norm(np.diff(away, axis=0, prepend=0.0)) * np.sqrt(self.links))
@@ -266,7 +266,7 @@ class LinkedRod(ABC):
         return reflected.ravel()
 
     @property
-    def continuum(self) -> DensityLoad | None:
+    def continuum_load(self) -> DensityLoad | None:
         """The load of the continuous filament that the links stand for; None without one."""
         return None
 

@@ -88,7 +88,7 @@ class Model(Protocol):
         """
 
     @property
-    def winds(self) -> bool:
+    def unwrapped(self) -> bool:
         """Whether joints wind up beyond pi, instead of folding there."""
 
     @property
@@ -121,13 +121,13 @@ class Model(Protocol):
         """
 
     @property
-    def continuum(self) -> DensityLoad | None:
+    def continuum_load(self) -> DensityLoad | None:
         """The load of the continuous filament that the links stand for; None without one."""
 
     def with_links(self, links: int) -> Self | None:
         """Return the same body made of another number of links; None if its links are the body."""
 
-    def departure(self, x: State) -> float:
+    def tangent_distance(self, x: State) -> float:
         """Return how far x is from straight, in the norm in which the integrator measures."""
 
     def energy(self, x: State) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from undula.analysis.observables.shapes import Range
-from undula.analysis.ramps.ramp import Course, Step
+from undula.analysis.ramps.ramp import Ramp, Step
 from undula.errors import InputError
 from undula.models.model import Model
 from undula.storage.result_kinds import Kind
@@ -61,10 +61,10 @@ class Series:
     input: Mapping[str, Any]
     load: str
     model: Model
-    course: Course
+    course: Ramp
 
 
-def write_steps(path: Path, series: Series, steps: Sequence[Step]) -> None:
+def write_ramp(path: Path, series: Series, steps: Sequence[Step]) -> None:
     """Write the steps of a series so far, whole or not at all, in place of any earlier ones.
 
     Parameters
@@ -85,7 +85,7 @@ def write_steps(path: Path, series: Series, steps: Sequence[Step]) -> None:
     write_result(path, dataset_of_steps(series, steps), STEPS, overwrite=True)
 
 
-def load_steps(path: Path | str) -> xr.Dataset:
+def load_ramp(path: Path | str) -> xr.Dataset:
     """Read a stored series of steps.
 
     Parameters
@@ -176,7 +176,7 @@ def _attributes(series: Series) -> dict[str, str]:
     }
 
 
-def _options(course: Course) -> dict[str, Any]:
+def _options(course: Ramp) -> dict[str, Any]:
     """Return a course in plain JSON types, under the names of the options that ask for it."""
     first, last, count = course.values[0], course.values[-1], len(course.values)
     # Not all the values: an attribute has to be short.

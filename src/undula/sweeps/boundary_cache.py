@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from undula.analysis.maps.stability_boundaries import Borders, border_column
-from undula.analysis.maps.stability_intervals import Change, Stretches
+from undula.analysis.maps.stability_boundaries import StabilityBoundaries, border_column
+from undula.analysis.maps.stability_intervals import Change, StabilityIntervals
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
 from undula.schema.sweep_axes import axes_of
@@ -29,7 +29,7 @@ NAME = "borders.json"
 _CHANGES = ("fold", "gained", "lost")
 
 #: What is known of each kind of state at one value of the parameter.
-Column = Mapping[str, Stretches]
+Column = Mapping[str, StabilityIntervals]
 
 
 def tables_of(store: xr.Dataset) -> dict[str, Any]:
@@ -70,7 +70,10 @@ def kept_columns(path: Path, store: xr.Dataset) -> list[Column | None]:
 
 
 def keep_borders(
-    path: Path, store: xr.Dataset, borders: Borders, columns: Sequence[Column | None] = ()
+    path: Path,
+    store: xr.Dataset,
+    borders: StabilityBoundaries,
+    columns: Sequence[Column | None] = (),
 ) -> None:
     """Write borders beside a study, in place of any earlier ones.
 
@@ -85,7 +88,7 @@ def keep_borders(
     write_whole(path / NAME, sealed_json(content), overwrite=True)
 
 
-def told(borders: Borders, columns: Sequence[Column | None]) -> dict[str, Any]:
+def told(borders: StabilityBoundaries, columns: Sequence[Column | None]) -> dict[str, Any]:
     """Return borders in plain JSON types, null in place of what is not finite."""
     plain = {
         "parameter": borders.parameter,
@@ -109,10 +112,10 @@ def _read(column: Mapping[str, Any]) -> Column:
     return {kind: _stretches(state) for kind, state in column.items()}
 
 
-def _stretches(kept: Mapping[str, Any]) -> Stretches:
+def _stretches(kept: Mapping[str, Any]) -> StabilityIntervals:
     """Return what is known of a state; what is not finite in it is always infinite."""
     changes = {name: kept[name] and Change(**kept[name]) for name in _CHANGES}
-    return Stretches(
+    return StabilityIntervals(
         kept["kind"],
         kept["begins"],
         tuple((low, math.inf if high is None else high) for low, high in kept["stable"]),

@@ -12,7 +12,7 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from undula.analysis.maps.stability_along_force import solved_line, solved_record
+from undula.analysis.maps.stability_along_force import solved_record, stability_along_force
 from undula.analysis.regimes.classify import UNDECIDED
 from undula.analysis.run_settings import Ending
 from undula.analysis.runs.dataset import dataset_of
@@ -141,7 +141,7 @@ def _solved_line(jobs: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     began = time.perf_counter()
     try:
         models = [build_model(parse_input(job["tables"])) for job in jobs]
-        found = solved_line(models[0], [model.load.force for model in models])
+        found = stability_along_force(models[0], [model.load.force for model in models])
         records = [{"status": DONE, **record} for record in found]
     except Exception:
         # What fails is to be known by its point.

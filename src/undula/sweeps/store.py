@@ -230,7 +230,7 @@ def open_study(path: Path, study: Study) -> StudyStore:
     return StudyStore(path, study)
 
 
-def load_study(path: Path | str, *, shapes: bool = True) -> xr.Dataset:
+def load_sweep(path: Path | str, *, shapes: bool = True) -> xr.Dataset:
     """Open a stored study; its variables are read when they are asked for.
 
     Points of which something is damaged are shown as not done, and a warning says how many.

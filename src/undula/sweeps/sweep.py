@@ -259,7 +259,7 @@ def _checked(draft: Study, number: int) -> RunInput:
         refuse_too_large(model, build_schedule(wanted))
         if number == 0:
             build_start(wanted, model)  # which may lie in a file
-        if model.winds and draft.policy == "neighbour":
+        if model.unwrapped and draft.policy == "neighbour":
             raise InputError(
                 "joints that wind up lose their full turns between neighbours; use model.spring ="
                 " 'angle' or another study.policy"

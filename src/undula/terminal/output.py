@@ -13,18 +13,18 @@ DONE, BAD_INPUT, STOPPED_EARLY = 0, 2, 3
 #: What a shell reports for a program ended by Ctrl-C; here: before there was any result.
 INTERRUPTED = 130
 
-Answer = Mapping[str, Any]
+JsonAnswer = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Told:
+class Answer:
     """An answer in plain JSON types, and the same for people."""
 
     answer: dict[str, Any]
     text: str
 
 
-def reply(answer: Answer, text: str, *, as_json: bool) -> None:
+def reply(answer: JsonAnswer, text: str, *, as_json: bool) -> None:
     """Give the answer of a command.
 
     Parameters

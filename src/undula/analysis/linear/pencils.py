@@ -211,7 +211,7 @@ def linearised(model: Model, method: Method | None = None) -> Linearisation:
         The method is none of these, or needs a continuum that the model has not.
     """
     if method is None:
-        method = "discrete" if model.continuum is None else "spectral"
+        method = "discrete" if model.continuum_load is None else "spectral"
     if not isinstance(method, str) or method not in _METHODS:
         raise InputError(f"method = {method!r} is not known; use 'spectral', 'modes' or 'discrete'")
     return _METHODS[method](model)
@@ -245,12 +245,12 @@ def _thinned(breaks: tuple[float, ...], pieces: int) -> tuple[float, ...]:
 
 
 def _continuum(model: Model) -> DensityLoad:
-    if model.continuum is None:
+    if model.continuum_load is None:
         raise InputError(
             "this model stands for no continuous inextensible filament, which the methods"
             " 'spectral' and 'modes' compute; use method = 'discrete'"
         )
-    return model.continuum
+    return model.continuum_load
 
 
 # Degree 24 leaves nothing but round-off at the first threshold of a smooth profile, 72 modes an

@@ -32,7 +32,7 @@ Progress = Callable[[int, int], None]
 _SETTLED = 1e-12
 
 
-def critical_force(
+def onset(
     model: Model, *, method: Method | None = None, later: int = 2, paper_time: bool = False
 ) -> Onset:
     """Return how the straight state loses stability as the force grows from 0.
@@ -87,7 +87,7 @@ def spectrum(
     count : int
         How many eigenvalues, at least 1; a complex pair is not split.
     method, paper_time
-        As in `critical_force`.
+        As in `onset`.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def growth_curve(
     parameter, values : str and sequence of float, optional
         Name of a parameter, such as "load.slope", and its values.
     method, paper_time
-        As in `critical_force`.
+        As in `onset`.
     progress : callable, optional
         Called with the number of values done and of all.
 
@@ -191,7 +191,7 @@ def critical_curve(
         Its name, such as "load.slope" or "model.segments".
     values : sequence of float
     method, paper_time
-        As in `critical_force`.
+        As in `onset`.
     progress : callable, optional
         Called with the number of values done and of all.
 
@@ -205,7 +205,7 @@ def critical_curve(
     method = method or method_for_all(models)
     onsets = []
     for done, each in enumerate(models, start=1):
-        onsets.append(critical_force(each, method=method, later=0, paper_time=paper_time))
+        onsets.append(onset(each, method=method, later=0, paper_time=paper_time))
         if progress:
             progress(done, len(models))
     return CriticalCurve(parameter, given, tuple(onsets))
@@ -213,7 +213,7 @@ def critical_curve(
 
 def method_for_all(models: Sequence[Model]) -> Method:
     """Return the method by which the onsets of several models can be compared."""
-    return "discrete" if any(model.continuum is None for model in models) else "spectral"
+    return "discrete" if any(model.continuum_load is None for model in models) else "spectral"
 
 
 def _resolved(linearisation: Linearisation, force: float) -> Linearisation:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from undula.analysis.maps.stability_boundaries import Borders
-from undula.analysis.maps.stability_intervals import Stretches
+from undula.analysis.maps.stability_boundaries import StabilityBoundaries
+from undula.analysis.maps.stability_intervals import StabilityIntervals
 from undula.analysis.parameters import FORCE
 from undula.analysis.regimes.classify import UNDECIDED
 from undula.errors import InputError
@@ -47,8 +47,8 @@ class Disagreement:
     near: bool
 
 
-def disagreements(
-    store: xr.Dataset, borders: Borders, *, near: float = 0.02
+def contradictions(
+    store: xr.Dataset, borders: StabilityBoundaries, *, near: float = 0.02
 ) -> tuple[Disagreement, ...]:
     """Return the points whose verdict contradicts the solved states.
 
@@ -83,7 +83,7 @@ def disagreements(
     return tuple(found)
 
 
-def _check(store: xr.Dataset, borders: Borders) -> None:
+def _check(store: xr.Dataset, borders: StabilityBoundaries) -> None:
     axes = axes_of(store)
     if FORCE not in axes:
         raise InputError(f"borders are values of {FORCE}, which is no axis of the store; add it")
@@ -105,7 +105,7 @@ def _points(store: xr.Dataset) -> Iterator[tuple[dict[str, float], str]]:
         yield at, str(verdicts.values[tuple(index)])
 
 
-def _index(borders: Borders, at: Mapping[str, float]) -> int:
+def _index(borders: StabilityBoundaries, at: Mapping[str, float]) -> int:
     """Return which column of the borders a point belongs to."""
     if borders.parameter is None:
         return 0
@@ -113,13 +113,13 @@ def _index(borders: Borders, at: Mapping[str, float]) -> int:
 
 
 def _contradiction(
-    verdict: str, force: float, column: Mapping[str, Stretches]
+    verdict: str, force: float, column: Mapping[str, StabilityIntervals]
 ) -> tuple[str | None, tuple[float, ...]]:
     """Return what contradicts a verdict, if anything does, and the forces of borders nearby."""
     kind = KINDS.get(verdict)
     if kind is not None:
         state = column[kind]
-        if force > state.known_to or state.holds(force):
+        if force > state.searched_to or state.is_stable_at(force):
             return None, ()
         return _told(state, force), state.edges
     begins = [state.begins for state in column.values() if state.kind != "straight"]
@@ -129,12 +129,12 @@ def _contradiction(
     return f"spinning and flapping begin at force {min(edges):.6g}", edges
 
 
-def _told(state: Stretches, force: float) -> str:
+def _told(state: StabilityIntervals, force: float) -> str:
     name = _NAMES[state.kind]
     if state.begins is not None and force < state.begins:
         return f"{name} begins at force {state.begins:.6g}"
     if not state.stable:
-        return f"{name} is stable at no force up to {state.known_to:.6g}"
+        return f"{name} is stable at no force up to {state.searched_to:.6g}"
     stretches = " and ".join(
         f"from {low:.6g} on" if high == np.inf else f"from force {low:.6g} to {high:.6g}"
         for low, high in state.stable

@@ -17,7 +17,7 @@ from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.shapes import Range
 from undula.analysis.parameters import FORCE
 from undula.analysis.solvers.flapping import flapping_family, flapping_unknowns
-from undula.analysis.solvers.state_kinds import kind_of
+from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.states.records import Flapping, NotFound, Spinning
 from undula.arrays import Shapes
 from undula.models.model import Model
@@ -47,12 +47,12 @@ def solved_record(model: Model) -> dict[str, Any]:
     -------
     dict
         The keys of a stored sweep: `verdict`, the stable state, or "undecided" if none of the three
-        is; `also`, other stable ones, with commas between them; `margin`, the largest growth rate
-        of a disturbance of the state [1/T], negative; `frequency` and `frequency_error` [cycles per
-        T]; `energy_min`, `energy_max`, `energy_mean`; `tip_radius_min`, `tip_radius_max` [L];
-        `planarity`. And of each kind, as `spinning`, whether it is "stable", "unstable", "none" (it
-        does not exist) or "not found" (it may), with its `spinning_rate` [1/T] and
-        `spinning_frequency`. Numbers that do not exist are NaN.
+        is; `also`, other stable ones, with commas between them; `margin`, the largest
+        growth rate of a disturbance of the state [1/T], negative; `frequency` and `frequency_error`
+        [cycles per T]; `energy_min`, `energy_max`, `energy_mean`; `tip_radius_min`,
+        `tip_radius_max` [L]; `planarity`. And of each kind, as `spinning`, whether it is "stable",
+        "unstable", "none" (it does not exist) or "not found" (it may), with its `spinning_rate`
+        [1/T] and `spinning_frequency`. Numbers that do not exist are NaN.
     """
     rest = spectrum(model, method="discrete", count=1)
     force = model.load.force
@@ -60,11 +60,11 @@ def solved_record(model: Model) -> dict[str, Any]:
         # Only a branch that is born downwards comes here.
         found = {kind: states_along(model, kind, [force]).get(force) for kind in _kinds(model)}
     else:
-        found = {kind: kind_of(kind).find(model) for kind in _kinds(model)}
+        found = {kind: kind_by_name(kind).find(model) for kind in _kinds(model)}
     return _record(rest, found)
 
 
-def solved_line(
+def stability_along_force(
     model: Model, forces: Sequence[float], *, progress: Callable[[float], None] | None = None
 ) -> list[dict[str, Any]]:
     """Return what a model does at each of many forces, from branches that are followed once.
@@ -101,9 +101,9 @@ def _kinds(model: Model) -> tuple[str, ...]:
 
 def _record(rest: Spectrum, found: Mapping[str, Any]) -> dict[str, Any]:
     """Return the record of the straight state's spectrum, and of the states beside it."""
-    stands = {"straight": STABLE if rest.rates[0] < 0.0 else UNSTABLE}
-    stands |= {kind: _standing(found.get(kind)) for kind in _MOVING}
-    stable = [kind for kind, told in stands.items() if told == STABLE]
+    status = {"straight": STABLE if rest.rates[0] < 0.0 else UNSTABLE}
+    status |= {kind: _standing(found.get(kind)) for kind in _MOVING}
+    stable = [kind for kind, told in status.items() if told == STABLE]
     first, others = (stable[0], stable[1:]) if stable else (None, [])
     record: dict[str, Any] = {
         "verdict": VERDICTS[first] if first else "undecided",
@@ -111,7 +111,7 @@ def _record(rest: Spectrum, found: Mapping[str, Any]) -> dict[str, Any]:
     }
     record |= _at_rest(rest) if first == "straight" else _moving(found.get(first or ""))
     rates = {"straight": float(rest.rates[0])} | {kind: _rate(found.get(kind)) for kind in _MOVING}
-    for kind, told in stands.items():
+    for kind, told in status.items():
         record |= {kind: told, f"{kind}_rate": rates[kind]}
     return record | {
         f"{kind}_frequency": getattr(found.get(kind), "frequency", np.nan) for kind in _MOVING

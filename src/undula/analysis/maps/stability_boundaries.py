@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from undula.analysis.linear.stability import critical_force
+from undula.analysis.linear.stability import onset
 from undula.analysis.maps.stability_intervals import (
     Change,
-    Stretches,
+    StabilityIntervals,
     moving_stretches,
     nothing_known,
     straight_stretches,
@@ -43,7 +43,7 @@ _LATER = 2
 
 
 @dataclass(frozen=True)
-class Borders:
+class StabilityBoundaries:
     """Where states begin and are stable, at each value of a parameter.
 
     Attributes
@@ -61,7 +61,7 @@ class Borders:
     parameter: str | None
     values: tuple[float, ...]
     up_to: float
-    columns: tuple[Mapping[str, Stretches], ...]
+    columns: tuple[Mapping[str, StabilityIntervals], ...]
 
     def curve(self, name: str) -> tuple[Array, Array]:
         """Return the forces (k,) of a border over the values, NaN where it has none, and errors.
@@ -91,17 +91,17 @@ class Borders:
         if change == "fold":
             return f"{kind} is born upwards"
         word = "become stable" if change == "gained" else "lose stability"
-        return f"{kind} does not {word} up to force {state.known_to:.6g}"
+        return f"{kind} does not {word} up to force {state.searched_to:.6g}"
 
 
-def solved_borders(
+def stability_boundaries(
     model: Model,
     parameter: str | None,
     values: Sequence[float],
     up_to: float,
     *,
     progress: Callable[[int, int], None] | None = None,
-) -> Borders:
+) -> StabilityBoundaries:
     """Return the borders between the motions of a model, over values of a parameter.
 
     Parameters
@@ -137,27 +137,27 @@ def solved_borders(
         columns.append(border_column(model, parameter, value, up_to))
         if progress:
             progress(done, len(taken))
-    return Borders(parameter, taken, float(up_to), tuple(columns))
+    return StabilityBoundaries(parameter, taken, float(up_to), tuple(columns))
 
 
 def border_column(
     model: Model, parameter: str | None, value: float, up_to: float
-) -> dict[str, Stretches]:
+) -> dict[str, StabilityIntervals]:
     """Return what is known of "straight", "spinning" and "flapping" at one value of a parameter.
 
-    Arguments are those of `solved_borders`.
+    Arguments are those of `stability_boundaries`.
     """
     try:
         there = model if parameter is None else changed(model, parameter, value)
         # The runs of a diagram are of links as they are, and so are the other borders.
-        onset = critical_force(there, method="discrete", later=_LATER)
+        straight_onset = onset(there, method="discrete", later=_LATER)
     except (InputError, ArithmeticError, np.linalg.LinAlgError) as error:
         return {kind: nothing_known(kind, str(error)) for kind in ("straight", *_MOVING)}
-    column = {"straight": straight_stretches(onset)}
-    return column | {kind: _moving(there, kind, onset.force, up_to) for kind in _MOVING}
+    column = {"straight": straight_stretches(straight_onset)}
+    return column | {kind: _moving(there, kind, straight_onset.force, up_to) for kind in _MOVING}
 
 
-def _moving(model: Model, kind: str, onset: float | None, up_to: float) -> Stretches:
+def _moving(model: Model, kind: str, onset: float | None, up_to: float) -> StabilityIntervals:
     if kind == "spinning" and model.dimension != 3:
         return nothing_known(kind, "a confined model cannot spin")
     if onset is None:

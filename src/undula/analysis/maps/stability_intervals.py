@@ -12,7 +12,7 @@ import numpy as np
 from undula.analysis.linear.results import Onset
 from undula.analysis.maps.states_at_forces import states_along
 from undula.analysis.parameters import FORCE
-from undula.analysis.solvers.criticality import born_downwards
+from undula.analysis.solvers.criticality import is_subcritical
 from undula.analysis.solvers.state_kinds import follow, follow_from_onset
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.follow_branch import Progress, unstable
@@ -44,7 +44,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Stretches:
+class StabilityIntervals:
     """Where along the force a kind of state is stable.
 
     Attributes
@@ -66,13 +66,13 @@ class Stretches:
     kind: str
     begins: float | None
     stable: tuple[tuple[float, float], ...]
-    known_to: float
+    searched_to: float
     fold: Change | None = None
     gained: Change | None = None
     lost: Change | None = None
     reason: str | None = None
 
-    def holds(self, force: float) -> bool:
+    def is_stable_at(self, force: float) -> bool:
         """Tell whether the state is stable at a force."""
         return any(low <= force <= high for low, high in self.stable)
 
@@ -83,12 +83,12 @@ class Stretches:
         return tuple(sorted({*ends, *([] if self.begins is None else [self.begins])}))
 
 
-def nothing_known(kind: str, reason: str) -> Stretches:
+def nothing_known(kind: str, reason: str) -> StabilityIntervals:
     """Return that nothing is known of a kind of state, and why."""
-    return Stretches(kind, None, (), 0.0, reason=reason)
+    return StabilityIntervals(kind, None, (), 0.0, reason=reason)
 
 
-def straight_stretches(onset: Onset) -> Stretches:
+def straight_stretches(onset: Onset) -> StabilityIntervals:
     """Return where the straight state of the links as they are is stable."""
     crossings = [*([onset.hopf] if onset.hopf else []), *onset.later]
     ends, growing = [0.0], 0
@@ -100,15 +100,15 @@ def straight_stretches(onset: Onset) -> Stretches:
         ends.append(np.inf)
     first = onset.hopf
     lost = None if first is None else Change(first.force, first.round_off, first.frequency)
-    known_to = np.inf if first else onset.searched_to
+    searched_to = np.inf if first else onset.searched_to
     reason = None if first else str(onset)
     stable = tuple(zip(ends[::2], ends[1::2], strict=True))
-    return Stretches("straight", 0.0, stable, known_to, lost=lost, reason=reason)
+    return StabilityIntervals("straight", 0.0, stable, searched_to, lost=lost, reason=reason)
 
 
 def moving_stretches(
     model: Model, kind: str, onset: float, up_to: float, progress: Progress | None = None
-) -> Stretches:
+) -> StabilityIntervals:
     """Return where a state that moves is stable.
 
     Parameters
@@ -135,18 +135,18 @@ def moving_stretches(
         branch = follow(begun, FORCE, up_to, progress=progress, enough=_hopeless)
     changes = _changes(born) + _changes(branch)
     begins = fold.value if fold else onset
-    known_to = start if branch is None else float(branch.values.max())
+    searched_to = start if branch is None else float(branch.values.max())
     complete = branch is None or branch.complete
-    return Stretches(
+    return StabilityIntervals(
         kind,
         begins,
         # A branch that is born downwards is unstable until it turns.
         _stretches(changes, begun.stable and not fold, begins),
-        known_to,
+        searched_to,
         _told(fold),
         _first(changes, "gains"),
         _first(changes, "loses"),
-        None if complete else _left(branch, known_to),
+        None if complete else _left(branch, searched_to),
     )
 
 
@@ -154,15 +154,15 @@ def _hopeless(bifurcation: Bifurcation[Any]) -> bool:
     return bifurcation.unstable_after >= _MOST_GROWING
 
 
-def _left(branch: Branch[Any] | None, known_to: float) -> str:
+def _left(branch: Branch[Any] | None, searched_to: float) -> str:
     growing = unstable(branch.states[-1]) if branch else 0
     why = f", where {growing} disturbances grow" if growing >= _MOST_GROWING else ""
-    return f"the branch was not followed beyond force {known_to:.6g}{why}"
+    return f"the branch was not followed beyond force {searched_to:.6g}{why}"
 
 
 def _born_downwards(model: Model, kind: str, end: float) -> Branch[Any] | None:
     """Return a branch from the Hopf point on, if it goes down there and comes up to the end."""
-    if not born_downwards(model, kind):
+    if not is_subcritical(model, kind):
         return None
     branch = follow_from_onset(model, kind, end)
     return None if isinstance(branch, NotFound) or not branch.complete else branch

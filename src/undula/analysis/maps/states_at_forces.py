@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from undula.analysis.parameters import FORCE
-from undula.analysis.solvers.state_kinds import kind_of
+from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.states.follow_branch import UnresolvedError
 from undula.analysis.states.records import NotFound
 from undula.arrays import Array
@@ -62,7 +62,7 @@ def states_along(
     InputError
         There is no such kind.
     """
-    chosen = kind_of(kind)
+    chosen = kind_by_name(kind)
     began = chosen.start(model)
     if began is None or not forces:
         return {}

@@ -13,10 +13,10 @@ import numpy as np
 from undula.analysis.observables.peaks import PROMINENCE, prominent_maxima
 from undula.analysis.observables.shapes import (
     arc_weights,
+    azimuth,
     displacement,
     mean_position,
     transverse,
-    winding_angle,
 )
 from undula.analysis.observables.spectrum import hann
 from undula.arrays import Array, Instants, Shapes
@@ -66,7 +66,7 @@ def precession(time: Instants, nodes: Shapes) -> Precession | None:
     plane = plane_angle(nodes, len(tops))
     smoothed_away = span * len(plane) / len(time)
     return Precession(
-        tip_turns=float(winding_angle(nodes)[-1] - winding_angle(nodes)[0]) / (2.0 * np.pi * span),
+        tip_turns=float(azimuth(nodes)[-1] - azimuth(nodes)[0]) / (2.0 * np.pi * span),
         plane_turns=float(plane[-1] - plane[0]) / (2.0 * np.pi * smoothed_away),
         beats=0.5 * len(tops) / span,
         side_switching=_switching(nodes, plane, tops),

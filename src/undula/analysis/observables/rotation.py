@@ -27,7 +27,7 @@ FOLLOWED = 1.0
 
 
 @dataclass(frozen=True)
-class Winding:
+class LinkRotation:
     """How the links go round about axes across z, each array of shape ``(N,)``, base first.
 
     Attributes
@@ -67,7 +67,7 @@ def lowest_direction(nodes: Shapes) -> Array:
     return lowest
 
 
-def winding(nodes: Shapes, chosen: Indices) -> Winding:
+def winding(nodes: Shapes, chosen: Indices) -> LinkRotation:
     """Measure how links turn about axes across z.
 
     Parameters
@@ -90,7 +90,7 @@ def winding(nodes: Shapes, chosen: Indices) -> Winding:
         spans, link = _spans(angle[i], turned[i]), chosen[i]
         if len(spans) >= FEWEST_SPANS and np.median(angle[i]) <= FOLLOWED:
             coherence[link], turns[link] = np.median(spans), SPAN * np.sum(spans)
-    return Winding(coherence, turns)
+    return LinkRotation(coherence, turns)
 
 
 def _spans(angle: Array, turned: Array) -> Array:

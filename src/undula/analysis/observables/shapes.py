@@ -124,7 +124,7 @@ def displacement(nodes: Array) -> Array:
     return found.reshape(nodes.shape[:-2])
 
 
-def winding_angle(nodes: Shapes) -> Instants:
+def azimuth(nodes: Shapes) -> Instants:
     """Azimuth of the mean position about z, followed continuously through time [rad].
 
     The angle is meaningful while the mean position keeps away from the axis and moves by less than

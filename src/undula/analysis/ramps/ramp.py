@@ -32,7 +32,7 @@ MOST_STEPS = 10_000
 
 
 @dataclass(frozen=True)
-class Course:
+class Ramp:
     """The values that a parameter takes, one after the other, and the kick before each run.
 
     Attributes
@@ -72,7 +72,7 @@ class Course:
             raise InputError(f"seed = {self.seed!r} has to be a whole number, at least 0")
 
     @property
-    def stops(self) -> tuple[tuple[float, str], ...]:
+    def targets(self) -> tuple[tuple[float, str], ...]:
         """The values in the order in which they are taken, each with its direction."""
         there, back = ("up", "down") if self.values[-1] >= self.values[0] else ("down", "up")
         returning = self.values[-2::-1] if self.back else ()
@@ -87,13 +87,13 @@ class Course:
             There is no such parameter, it is a whole number, or a value is out of its range; or
             joints wind up, and their full turns would be lost between two steps.
         """
-        if model.winds:
+        if model.unwrapped:
             raise InputError(
                 "joints that wind up lose their full turns between two steps; use"
                 " model.spring = 'angle', which is the same as long as none turns beyond pi"
             )
         value_of(model, self.parameter)
-        models = [changed(model, self.parameter, value) for value, _ in self.stops]
+        models = [changed(model, self.parameter, value) for value, _ in self.targets]
         for here in models:
             here.straight()  # of which extensible links may be incapable
         return models
@@ -163,9 +163,9 @@ class Step:
     shapes: Shapes
 
 
-def settle_and_step(
+def ramp(
     model: Model,
-    course: Course,
+    course: Ramp,
     start: State,
     schedule: Schedule,
     *,
@@ -209,13 +209,13 @@ def settle_and_step(
             raise KeyboardInterrupt
         if run.ending is Ending.OUT_OF_TIME:
             return
-        value, direction = course.stops[number]
+        value, direction = course.targets[number]
         step = _step(run, value, direction, began)
         nodes = step.nodes
         yield step
 
 
-def _turned(model: Model, nodes: Nodes, course: Course, number: int) -> State:
+def _turned(model: Model, nodes: Nodes, course: Ramp, number: int) -> State:
     """Return the state with these nodes and links turned by the kick of a step."""
     if course.kick == 0.0:
         return model.from_nodes(nodes)

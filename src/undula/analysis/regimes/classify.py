@@ -17,13 +17,19 @@ from undula.analysis.observables.alignment import comparison
 from undula.analysis.observables.linear_mode import LinearMotion
 from undula.analysis.observables.shapes import displacement
 from undula.analysis.regimes.evidence import Evidence
-from undula.analysis.regimes.late_window import THIN, Late, Name
+from undula.analysis.regimes.late_window import THIN, LateWindow, Name
 from undula.analysis.regimes.lyapunov import Lyapunov
-from undula.analysis.regimes.names import flaps, returning, steady, wandering, windmills
+from undula.analysis.regimes.names import (
+    name_flapping,
+    name_windmilling,
+    returning,
+    steady,
+    wandering,
+)
 from undula.analysis.regimes.recurrence import RECURRENT
 from undula.analysis.regimes.relaxation import DECAY_FACTOR, Straightening, straightening
 from undula.analysis.regimes.stationary_window import late_windows
-from undula.analysis.regimes.why_undecided import MIN_SAMPLES_PER_PERIOD, missing
+from undula.analysis.regimes.why_undecided import MIN_SAMPLES_PER_PERIOD, why_undecided
 from undula.arrays import Instants, Shapes
 
 STRAIGHT, UNDECIDED = "straight", "undecided"
@@ -71,7 +77,7 @@ class Verdict:
     window_start: float
     margin: float = 0.0
     longer: float | None = None
-    late: Late | None = None
+    late: LateWindow | None = None
 
 
 def first_verdict(
@@ -121,7 +127,7 @@ def first_verdict(
         seen = Evidence(
             time[part], nodes[part], bending_energy[part], rotation_angle[part], compare
         )
-        late = Late(time[part], nodes[part], seen, axisymmetric)
+        late = LateWindow(time[part], nodes[part], seen, axisymmetric)
         verdict = _verdict(late, looked)
         if verdict.name != UNDECIDED:
             return verdict
@@ -266,15 +272,15 @@ def _manner(motion: LinearMotion) -> str:
     return f"monotone decay ({crossings}) at rate {-motion.rate:.4g}/T"
 
 
-def _verdict(late: Late, fall: Straightening) -> Verdict:
+def _verdict(late: LateWindow, fall: Straightening) -> Verdict:
     """Name what a window shows, or say what is missing."""
     start = float(late.time[0])
-    found = steady(late) or windmills(late) or flaps(late)
+    found = steady(late) or name_windmilling(late) or name_flapping(late)
     enough = found is None and _seen_enough(late, fall)
     if enough:
         found = returning(late)
-    if found is not None and found.unrest:
-        reason = f"{found.name} so far, but {found.unrest}: run longer"
+    if found is not None and found.still_changing:
+        reason = f"{found.name} so far, but {found.still_changing}: run longer"
         span = float(late.time[-1] - late.time[0])
         return Verdict(UNDECIDED, reason, late.numbers(), start, longer=span)
     if found is not None and found.margin < THIN:
@@ -282,12 +288,12 @@ def _verdict(late: Late, fall: Straightening) -> Verdict:
         return Verdict(UNDECIDED, reason, late.numbers(), start)
     if found is not None:
         return Verdict(found.name, found.reason, late.numbers(), start, margin=found.margin)
-    reason, longer = missing(late, fall)
+    reason, longer = why_undecided(late, fall)
     waits = late if enough and late.irregular else None
     return Verdict(UNDECIDED, reason, late.numbers(), start, longer=longer, late=waits)
 
 
-def _seen_enough(late: Late, fall: Straightening) -> bool:
+def _seen_enough(late: LateWindow, fall: Straightening) -> bool:
     """Whether the window shows a motion, not the growth or decay of a small one."""
     seen = late.seen
     sampled = seen.samples_per_period >= MIN_SAMPLES_PER_PERIOD

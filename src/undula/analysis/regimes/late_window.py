@@ -10,7 +10,7 @@ import numpy as np
 from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.precession import plane_angle
 from undula.analysis.observables.rotation import (
-    Winding,
+    LinkRotation,
     lowest_direction,
     sense_of_rotation,
     winding,
@@ -38,17 +38,17 @@ THIN = 1.05
 class Name:
     """A name with one sentence and the factor by which its criteria are met, at least 1.
 
-    `unrest` tells what still changes, if the motion only looks settled.
+    `still_changing` tells what still changes, if the motion only looks settled.
     """
 
     name: str
     reason: str
     margin: float
-    unrest: str = ""
+    still_changing: str = ""
 
 
 @dataclass(frozen=True)
-class Late:
+class LateWindow:
     """The late window of a run, with what is measured only where it is asked for.
 
     Attributes
@@ -84,7 +84,7 @@ class Late:
         return np.flatnonzero(lowest_direction(self.nodes) <= BACKWARDS)
 
     @cached_property
-    def winding(self) -> Winding:
+    def winding(self) -> LinkRotation:
         """Turning of these links about axes across z."""
         return winding(self.nodes, self.backwards)
 

@@ -18,7 +18,7 @@ from undula.models.model import Model
 from undula.numerics.integration.lyapunov import BLOCKS, TURNING_IN, growth, mean_rates
 from undula.numerics.integration.schemes import NDF
 from undula.numerics.integration.status import Status
-from undula.numerics.integration.stepper_state import TIME, Memory, start
+from undula.numerics.integration.stepper_state import TIME, StepperState, start
 from undula.numerics.integration.system import RATES
 
 # Velocity and turning are one direction if the sine of their angle stays below this: they agree to
@@ -76,7 +76,7 @@ class Lyapunov:
         """Its error [1/T]."""
         return float(self.errors[self._others[0]])
 
-    def told(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """Return all of it in plain JSON types."""
         return {
             "value": self.value,
@@ -154,7 +154,7 @@ def lyapunov(
     return Lyapunov(values, errors, symmetries, duration * (1.0 - TURNING_IN))
 
 
-def _begin(model: Model, state: Array, duration: float) -> Memory:
+def _begin(model: Model, state: Array, duration: float) -> StepperState:
     known = state.shape == model.position_mask.shape
     x = model.positions(state) if known else model.admissible(state)
     rates = model.rates(x)
@@ -166,7 +166,7 @@ def _begin(model: Model, state: Array, duration: float) -> Memory:
     return start(model.system, NDF, unknowns, rates, 0.0, step)
 
 
-def _directions(model: Model, memory: Memory) -> int:
+def _directions(model: Model, memory: StepperState) -> int:
     """Return how many directions the velocity and the turning span."""
     x = model.positions(memory.differences[0, :-RATES])
     velocity, turning = model.rhs(x), model.rotation_generator(x)

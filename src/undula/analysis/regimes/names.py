@@ -19,8 +19,14 @@ from __future__ import annotations
 import numpy as np
 
 from undula.analysis.regimes.evidence import GROWTH_FACTOR, MIN_TURNS, STEADY_SHAPE
-from undula.analysis.regimes.late_window import GOES_ROUND, PLANAR_TOLERANCE, Late, Name, below
-from undula.analysis.regimes.names_without_symmetry import ASIDE, held_name, rests
+from undula.analysis.regimes.late_window import (
+    GOES_ROUND,
+    PLANAR_TOLERANCE,
+    LateWindow,
+    Name,
+    below,
+)
+from undula.analysis.regimes.names_without_symmetry import OFF_AXIS, held_name, rests
 from undula.analysis.regimes.recurrence import RECURRENT, STEADY_FACTOR
 from undula.analysis.regimes.stationary_window import STATIONARY
 from undula.analysis.regimes.trends import flattens, out_of_plane, shape_change, swing
@@ -40,17 +46,17 @@ PRECESSES = RECURRENT
 WINDMILLS = 0.6
 
 
-def steady(late: Late) -> Name | None:
+def steady(window: LateWindow) -> Name | None:
     """Return the name of a steady shape: one that is seen to turn, or rests where it is held."""
-    return spins(late) if late.axisymmetric else rests(late)
+    return name_spinning(window) if window.axisymmetric else rests(window)
 
 
-def spins(late: Late) -> Name | None:
+def name_spinning(window: LateWindow) -> Name | None:
     """Return the name of a steady shape that is seen to turn."""
-    seen = late.seen
+    seen = window.seen
     if not seen.spins:
         return None
-    change = shape_change(late.nodes)
+    change = shape_change(window.nodes)
     grows = change.grows(STEADY_FACTOR, VISIBLE * STEADY_SHAPE)
     return Name(
         "spinning",
@@ -61,11 +67,11 @@ def spins(late: Late) -> Name | None:
     )
 
 
-def windmills(late: Late) -> Name | None:
+def name_windmilling(window: LateWindow) -> Name | None:
     """Return the name of a motion in which links turn about an axis across z."""
-    if not len(late.backwards):
+    if not len(window.backwards):
         return None  # so that the whole measure can be saved
-    round_it = late.winding
+    round_it = window.winding
     turning = round_it.coherence >= WINDMILLS
     if not turning.any():
         return None
@@ -79,76 +85,76 @@ def windmills(late: Late) -> Name | None:
     )
 
 
-def flaps(late: Late) -> Name | None:
+def name_flapping(window: LateWindow) -> Name | None:
     """Return the name of a motion in a plane with one frequency."""
-    seen = late.seen
+    seen = window.seen
     if seen.planarity > PLANAR_TOLERANCE or seen.drift > STATIONARY:
         return None
     if seen.misfit > PERIODIC_TOLERANCE:
         return None
-    aside = not late.axisymmetric and late.bias > ASIDE
+    aside = not window.axisymmetric and window.bias > OFF_AXIS
     return Name(
         "asymmetric flapping" if aside else "planar flapping",
         f"periodic over {seen.periods:.3g} periods with {seen.planarity:.2g} of the motion out of"
         " its plane",
         below((seen.planarity, PLANAR_TOLERANCE), (seen.misfit, PERIODIC_TOLERANCE)),
-        leaves_its_plane(late.nodes),
+        leaves_its_plane(window.nodes),
     )
 
 
-def returning(late: Late) -> Name | None:
+def returning(window: LateWindow) -> Name | None:
     """Return the name of a motion whose shape comes back up to a turn."""
-    back = late.back
+    back = window.back
     if back is None or not back.repeats or back.growth > STEADY_FACTOR:
         return None
-    manner = (
+    description = (
         f"its shape comes back every {back.period:.4g} T to {back.distance:.1g} of itself, turned"
         f" by {np.degrees(back.turn):.3g} degrees"
     )
-    return _kinematic(late, manner, below((back.distance, RECURRENT)), _settles(late))
+    return _kinematic(window, description, below((back.distance, RECURRENT)), _settles(window))
 
 
-def wandering(late: Late, parting: str) -> Name:
+def wandering(window: LateWindow, parting: str) -> Name:
     """Return the name of a motion on a torus: its shape never comes back, nor does it diverge.
 
     `parting` tells how fast neighbouring motions part.
     """
-    manner = f"quasi-periodic: its shape never quite comes back, but {parting}"
-    return _kinematic(late, manner, np.inf, "")
+    description = f"quasi-periodic: its shape never quite comes back, but {parting}"
+    return _kinematic(window, description, np.inf, "")
 
 
-def _kinematic(late: Late, manner: str, margin: float, unrest: str) -> Name:
+def _kinematic(window: LateWindow, description: str, margin: float, still_changing: str) -> Name:
     """Name a motion by how it moves."""
-    if not late.axisymmetric:
-        return held_name(late, manner, margin, unrest)
-    planar, sense = late.seen.planarity, abs(late.sense)
+    if not window.axisymmetric:
+        return held_name(window, description, margin, still_changing)
+    planar, sense = window.seen.planarity, abs(window.sense)
     if planar <= PLANAR_TOLERANCE:
         margin = min(margin, below((planar, PLANAR_TOLERANCE)))
-        told = f"{manner}, {planar:.2g} of it out of its plane"
-        return Name("planar flapping", told, margin, unrest)
+        told = f"{description}, {planar:.2g} of it out of its plane"
+        return Name("planar flapping", told, margin, still_changing)
     if sense >= GOES_ROUND:
-        told = f"{manner}; it goes round the axis"
-        return Name("modulated spinning", told, min(margin, sense / GOES_ROUND), unrest)
+        told = f"{description}; it goes round the axis"
+        return Name("modulated spinning", told, min(margin, sense / GOES_ROUND), still_changing)
     margin = min(margin, below((sense, GOES_ROUND)))
-    beat, turn = late.beat_planarity, abs(late.plane_turn)
-    told = f"{manner}; each beat is {beat:.2g} off a plane"
+    beat, turn = window.beat_planarity, abs(window.plane_turn)
+    told = f"{description}; each beat is {beat:.2g} off a plane"
     if beat <= PLANAR_TOLERANCE and turn < PRECESSES:
         margin = min(margin, below((beat, PLANAR_TOLERANCE), (turn, PRECESSES)))
-        return Name("planar flapping", told, margin, unrest)
+        return Name("planar flapping", told, margin, still_changing)
     if beat <= PRECESSING_TOLERANCE and turn >= PRECESSES:
         margin = min(margin, below((beat, PRECESSING_TOLERANCE)), turn / PRECESSES)
-        return Name("precessing flapping", told, margin, unrest)
+        return Name("precessing flapping", told, margin, still_changing)
     flat, turns = beat / PRECESSING_TOLERANCE, below((turn, PRECESSES))
     # One of the two tells it from a beat in a turning plane.
-    return Name("non-planar flapping", told, min(margin, max(flat, turns)), unrest)
+    return Name("non-planar flapping", told, min(margin, max(flat, turns)), still_changing)
 
 
-def _settles(late: Late) -> str:
+def _settles(window: LateWindow) -> str:
     """Tell what still changes of a motion that comes back, if anything does."""
-    change = swing(late.nodes).difference
+    change = swing(window.nodes).difference
     if change > STATIONARY:
         return f"its swing changes by {change:.1%} between halves of the window"
-    return leaves_its_plane(late.nodes)
+    return leaves_its_plane(window.nodes)
 
 
 def leaves_its_plane(nodes: Shapes) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from undula.analysis.regimes.evidence import Evidence
-from undula.analysis.regimes.late_window import MANY_MAXIMA, PLANAR_TOLERANCE, Late
+from undula.analysis.regimes.late_window import MANY_MAXIMA, PLANAR_TOLERANCE, LateWindow
 from undula.analysis.regimes.recurrence import RECURRENT
 from undula.analysis.regimes.relaxation import DECAY_FACTOR, LATE_FACTOR, Straightening
 from undula.analysis.regimes.stationary_window import FALLBACK_SHARE, STATIONARY
@@ -14,7 +14,7 @@ from undula.analysis.regimes.stationary_window import FALLBACK_SHARE, STATIONARY
 MIN_SAMPLES_PER_PERIOD = 6.0
 
 
-def missing(late: Late, fall: Straightening) -> tuple[str, float | None]:
+def why_undecided(late: LateWindow, fall: Straightening) -> tuple[str, float | None]:
     """Say why there is no verdict, most specific reasons first.
 
     Parameters
@@ -59,7 +59,7 @@ def missing(late: Late, fall: Straightening) -> tuple[str, float | None]:
     return _few_returns(late), span * max(1.0, more)
 
 
-def _few_returns(late: Late) -> str:
+def _few_returns(late: LateWindow) -> str:
     """Say what is missing of a motion that does not drift."""
     back, plane = late.back, late.seen.planarity
     where = "planar" if plane <= PLANAR_TOLERANCE else f"{plane:.1%} out of plane"

@@ -93,10 +93,10 @@ def health_of(
     steps = int(count[names.STEPS])
     angle = 2.0 * math.atan(math.sqrt(largest_bend(motion.nodes)))
     folds = False
-    if model.winds or angle > 0.5 * np.pi:
+    if model.unwrapped or angle > 0.5 * np.pi:
         angles = np.abs(model.joint_angles(checkpoint["states"][:, :-RATES]))
         angle = float(angles.max())
-        folds = not model.winds and folded(motion, angles)
+        folds = not model.unwrapped and folded(motion, angles)
     return Health(
         power_balance_error=errors.power_balance_error,
         length_error=errors.length_error,

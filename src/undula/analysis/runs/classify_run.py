@@ -23,7 +23,7 @@ from undula.analysis.regimes.lyapunov import Lyapunov, NotFollowed, lyapunov
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.accuracy import Errors
 from undula.analysis.runs.credibility import Grounds
-from undula.analysis.runs.early_stop import FALLEN, NEAR, TURNS, Arrival, motion_of
+from undula.analysis.runs.early_stop import FALLEN, NEAR, TURNS, ReachedState, motion_of
 from undula.analysis.runs.fine_tail import CloseUp
 from undula.analysis.runs.finite_separation import FOLDS, Separation, finite_separation
 from undula.analysis.runs.settling import Settled
@@ -61,7 +61,7 @@ class Exponents(Enum):
 
 
 @dataclass(frozen=True)
-class Judged:
+class Classified:
     """A verdict with what it was made of.
 
     Attributes
@@ -84,10 +84,10 @@ class Judged:
     without: str = ""
 
 
-def failed(motion: Motion, cause: str) -> Judged:
+def failed(motion: Motion, cause: str) -> Classified:
     """Return what is said of a run that failed: nothing, whatever it looks like."""
     start = float(motion.time[0])
-    return Judged(Verdict(UNDECIDED, f"the run failed: {cause}", {}, start), motion)
+    return Classified(Verdict(UNDECIDED, f"the run failed: {cause}", {}, start), motion)
 
 
 def judge(
@@ -96,10 +96,10 @@ def judge(
     motions: tuple[Motion, CloseUp | None],
     errors: Errors,
     last: Array,
-    come_to: Settled | Arrival | None,
+    reached: Settled | ReachedState | None,
     exponents: Exponents,
     watch: Watch = lambda *_: None,
-) -> Judged:
+) -> Classified:
     """Judge a run by its whole motion and by the close-up of its end.
 
     Parameters
@@ -120,13 +120,13 @@ def judge(
     watch
         Told how far they are.
     """
-    arrived = isinstance(come_to, Arrival)
+    arrived = isinstance(reached, ReachedState)
     grounds = Grounds(model, schedule, motions[0], errors, last[:-RATES], known_stable=arrived)
-    if isinstance(come_to, Arrival):
-        judged = Judged(_arrived(come_to), motion_of(come_to, model, last))
-        last = last if come_to.state is None else np.append(come_to.state.unknowns, last[-RATES:])
+    if isinstance(reached, ReachedState):
+        judged = Classified(_arrived(reached), motion_of(reached, model, last))
+        last = last if reached.state is None else np.append(reached.state.unknowns, last[-RATES:])
     else:
-        judged = _first(model, *motions, come_to)
+        judged = _first(model, *motions, reached)
     judged = _believed(grounds, judged)
     if exponents is Exponents.NEVER:
         return judged
@@ -140,11 +140,11 @@ def judge(
     return _believed(grounds, found)
 
 
-def _believed(grounds: Grounds, judged: Judged) -> Judged:
+def _believed(grounds: Grounds, judged: Classified) -> Classified:
     return replace(judged, verdict=grounds.believed(judged.verdict, judged.motion))
 
 
-def _arrived(arrival: Arrival) -> Verdict:
+def _arrived(arrival: ReachedState) -> Verdict:
     """Return the verdict on a run that was left for a state."""
     rate, near = arrival.leading_rate, arrival.relative
     evidence = {"distance": arrival.distance, "leading_rate": rate}
@@ -164,7 +164,9 @@ def _arrived(arrival: Arrival) -> Verdict:
     return Verdict(name, told, evidence, arrival.time, margin=min(MOST, limit / max(near, 1e-9)))
 
 
-def _first(model: Model, whole: Motion, close: CloseUp | None, settled: Settled | None) -> Judged:
+def _first(
+    model: Model, whole: Motion, close: CloseUp | None, settled: Settled | None
+) -> Classified:
     """Judge a run without exponents, by its close-up only where the samples of the whole fail."""
     if close is not None:
         steady = None
@@ -172,11 +174,11 @@ def _first(model: Model, whole: Motion, close: CloseUp | None, settled: Settled 
             steady = max(settled.since, float(close.time[0]))
         told = coarse_verdict(*_signals(whole), steady_from=steady, axisymmetric=model.axisymmetric)
         if told is not None:
-            return Judged(told, whole)
+            return Classified(told, whole)
     motion = close.motion if close else whole
     since = settled.since if settled else None
     found = first_verdict(*_signals(motion), settled_from=since, axisymmetric=model.axisymmetric)
-    return Judged(found, motion)
+    return Classified(found, motion)
 
 
 def _signals(motion: Motion) -> tuple[Instants, Shapes, Instants, Instants]:
@@ -185,26 +187,32 @@ def _signals(motion: Motion) -> tuple[Instants, Shapes, Instants, Instants]:
 
 
 def _with_exponents(
-    model: Model, schedule: Schedule, judged: Judged, last: Array, watch: Watch, *, parting: bool
-) -> Judged:
+    model: Model,
+    schedule: Schedule,
+    judged: Classified,
+    last: Array,
+    watch: Watch,
+    *,
+    parting: bool,
+) -> Classified:
     """Follow the motion on from its last state, for longer if the first exponents do not tell."""
     if judged.verdict.name == STRAIGHT:
-        return Judged(judged.verdict, judged.motion, without=_STRAIGHT_HAS)
+        return Classified(judged.verdict, judged.motion, without=_STRAIGHT_HAS)
     motion, duration = judged.motion, _duration(judged)
     found = _told(model, schedule, judged.verdict, last, duration, watch)
     if isinstance(found, NotFollowed):
-        return Judged(judged.verdict, motion, without=found.reason)
+        return Classified(judged.verdict, motion, without=found.reason)
     verdict = with_exponents(judged.verdict, found)
-    if not parting or model.winds:
-        return Judged(verdict, motion, found)
+    if not parting or model.unwrapped:
+        return Classified(verdict, motion, found)
     chaotic = found.value > SIGNIFICANT * found.error
     watched = FOLDS / found.value if chaotic else WATCHED * duration
     pairs = finite_separation(
         model, model.positions(last), watched, progress=partial(watch, "pairs of nearby runs")
     )
     if isinstance(pairs, NotFollowed):
-        return Judged(verdict, motion, found, without=pairs.reason)
-    return Judged(verdict, motion, found, pairs)
+        return Classified(verdict, motion, found, without=pairs.reason)
+    return Classified(verdict, motion, found, pairs)
 
 
 def _told(
@@ -233,7 +241,7 @@ def _of_blocks(watch: Watch) -> Callable[[int, int], None]:
     return lambda done, total: watch("Lyapunov exponents", done / total)
 
 
-def _duration(judged: Judged) -> float:
+def _duration(judged: Classified) -> float:
     """Return how long to follow a motion [T]."""
     late, seen = judged.motion.late(judged.verdict.window_start), judged.verdict.evidence
     span = float(late.time[-1] - late.time[0])

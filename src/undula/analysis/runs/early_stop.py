@@ -25,7 +25,7 @@ from undula.analysis.observables.alignment import aligned_distance
 from undula.analysis.observables.shapes import displacement
 from undula.analysis.observables.trajectory import Motion
 from undula.analysis.parameters import FORCE
-from undula.analysis.runs.settling import Pace
+from undula.analysis.runs.settling import MotionRates
 from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import (
     Disturbances,
@@ -62,7 +62,7 @@ TURNS, SAMPLES = 2, 32
 
 
 @dataclass(frozen=True)
-class Arrival:
+class ReachedState:
     """A stable state that a run was left for.
 
     Attributes
@@ -88,7 +88,7 @@ class Arrival:
     leading_rate: float
     state: Spinning | None = None
 
-    def told(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """Return it in plain JSON types."""
         names = ("kind", "time", "distance", "relative", "leading_rate")
         return {name: getattr(self, name) for name in names}
@@ -113,7 +113,7 @@ class _Seen(NamedTuple):
 
 
 @dataclass
-class Lookout:
+class StateDetector:
     """Looks out for a state next to a run, and remembers what it has seen of it."""
 
     model: Model
@@ -126,7 +126,9 @@ class Lookout:
     before: deque[tuple[float, Array]] = field(default_factory=lambda: deque(maxlen=FIRST_TRIED))
     seen: deque[_Seen] = field(default_factory=lambda: deque(maxlen=REMEMBERED))
 
-    def arrival(self, paces: Sequence[Pace], time: float, unknowns: Array) -> Arrival | None:
+    def arrival(
+        self, paces: Sequence[MotionRates], time: float, unknowns: Array
+    ) -> ReachedState | None:
         """Return the state that a run has come to, None if it has to go on.
 
         Parameters
@@ -158,7 +160,9 @@ class Lookout:
             self.seen.append(self._look(self.target, *self.before.popleft()))
         return self._reached(self.target)
 
-    def _straight(self, late: Sequence[Pace], time: float, unknowns: Array) -> Arrival | None:
+    def _straight(
+        self, late: Sequence[MotionRates], time: float, unknowns: Array
+    ) -> ReachedState | None:
         sizes = [pace.displacement for pace in late]
         part = sizes[-1] / self.largest if self.largest > 0.0 else 0.0
         falls = all(later < earlier for earlier, later in pairwise(sizes))
@@ -169,7 +173,7 @@ class Lookout:
         if rate >= 0.0:
             return None
         away = float(displacement(self._nodes(unknowns)))
-        return Arrival("straight", time, away, part, rate)
+        return ReachedState("straight", time, away, part, rate)
 
     def _aim(self, unknowns: Array, rate: float) -> None:
         """Solve for a state from the present shape."""
@@ -196,7 +200,7 @@ class Lookout:
         size = abs(complex(target.slowest @ (turned - target.state.unknowns)))
         return _Seen(time, float(apart.distance) / target.size, size)
 
-    def _reached(self, target: _Target) -> Arrival | None:
+    def _reached(self, target: _Target) -> ReachedState | None:
         """Return the target if the run comes to it."""
         now, rate = self.seen[-1], target.state.leading_rate
         if now.distance > NEAR:
@@ -209,7 +213,7 @@ class Lookout:
         fastest = FASTEST if now.distance > LITTLE else math.inf
         if not SLOWEST <= -fall / rate <= fastest:
             return None
-        return Arrival(
+        return ReachedState(
             "spinning", now.time, now.distance * target.size, now.distance, rate, target.state
         )
 
@@ -226,7 +230,7 @@ def turned_by(model: Model, y: Array, angles: Array) -> Array:
     )
 
 
-def motion_of(arrival: Arrival, model: Model, last: Array) -> Motion:
+def motion_of(arrival: ReachedState, model: Model, last: Array) -> Motion:
     """Return how the state moves, from the end of the run on.
 
     Parameters
@@ -251,6 +255,6 @@ def motion_of(arrival: Arrival, model: Model, last: Array) -> Motion:
     return Motion.of(model, arrival.time + time, rows)
 
 
-def _restlessness(pace: Pace) -> float:
+def _restlessness(pace: MotionRates) -> float:
     turned = abs(pace.turn_rate) * pace.displacement
     return pace.shape_speed / turned if turned > 0.0 else np.inf

@@ -17,7 +17,7 @@ from undula.analysis.runs.sample_buffer import FEWEST
 from undula.analysis.runs.simulation import ENOUGH_A_PERIOD, Simulation, copied
 from undula.arrays import Array, Instants
 from undula.models.model import Model
-from undula.numerics.integration.stepper_state import Memory
+from undula.numerics.integration.stepper_state import StepperState
 from undula.numerics.integration.time_loop import advance
 
 #: Periods in a close-up, if the marks reach back so far: frequencies gain with their square.
@@ -48,7 +48,7 @@ class CloseUp:
 
     model: Model
     schedule: Schedule
-    mark: Memory
+    mark: StepperState
     time: Instants
     noted: Array | None
 
@@ -93,7 +93,7 @@ def _repeating_from(simulation: Simulation) -> float:
     return settled.since if settled is not None and settled.kind in REPEATING else 0.0
 
 
-def sampled_again(model: Model, schedule: Schedule, mark: Memory, times: Array) -> Array:
+def sampled_again(model: Model, schedule: Schedule, mark: StepperState, times: Array) -> Array:
     """Sample a part of a run once more, at other times.
 
     Parameters

@@ -65,7 +65,7 @@ class Separation:
     time: Instants
     distance: Array
 
-    def told(self) -> dict[str, float]:
+    def as_dict(self) -> dict[str, float]:
         """Return its figures in plain JSON types."""
         return {"rate": self.rate, "error": self.error, "saturated": self.saturated}
 
@@ -112,7 +112,7 @@ def finite_separation(
         raise InputError(f"duration = {duration!r} has to be a positive finite number")
     if not isinstance(pairs, int | np.integer) or pairs < 2:
         raise InputError(f"pairs = {pairs!r} has to be a whole number, at least 2")
-    if model.winds:
+    if model.unwrapped:
         raise InputError(
             "a state whose joints have wound up cannot be started from; ask for the Lyapunov"
             " exponents only"

@@ -213,8 +213,8 @@ def _settled(simulation: Simulation, watch: Watch) -> Run | None:
 def _briefly_told(run: Run, settled: Settled, watch: Watch) -> bool:
     """Tell whether a run shows enough to be named; what leaves its plane has no name yet."""
     # That is a part of judging it which is told for far less than the whole.
-    unrest = leaves_its_plane(run.since(settled.since).nodes)
-    return not unrest and run.judged(watch).verdict.name == BRIEFLY_TOLD
+    still_changing = leaves_its_plane(run.since(settled.since).nodes)
+    return not still_changing and run.judged(watch).verdict.name == BRIEFLY_TOLD
 
 
 def _shown_again(settled: Settled, run: Run) -> Settled:

@@ -16,14 +16,14 @@ from undula.analysis.observables.frequency import (
 )
 from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.precession import Precession, precession
-from undula.analysis.observables.shapes import envelope, tip_height, tip_radius, winding_angle
+from undula.analysis.observables.shapes import azimuth, envelope, tip_height, tip_radius
 from undula.analysis.observables.trajectory import Motion
 from undula.analysis.regimes.classify import STRAIGHT, Verdict
 from undula.analysis.regimes.lyapunov import Lyapunov
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.accuracy import Errors, Health, errors_of, health_of
-from undula.analysis.runs.classify_run import Exponents, Judged, Watch, failed, judge
-from undula.analysis.runs.early_stop import Arrival
+from undula.analysis.runs.classify_run import Classified, Exponents, Watch, failed, judge
+from undula.analysis.runs.early_stop import ReachedState
 from undula.analysis.runs.fine_tail import CloseUp, close_up
 from undula.analysis.runs.finite_separation import Separation
 from undula.analysis.runs.settling import Settled
@@ -67,7 +67,7 @@ class Run:
     motion: Motion
     closer: CloseUp | None
     settled: Settled | None
-    arrival: Arrival | None
+    arrival: ReachedState | None
     tight_from: float | None
     checkpoint: Mapping[str, Array]
     exponents: Exponents = Exponents.IF_IRREGULAR
@@ -96,10 +96,10 @@ class Run:
         return self
 
     @cached_property
-    def _judged(self) -> Judged:
+    def _judged(self) -> Classified:
         return self._judge(lambda *_: None)
 
-    def _judge(self, watch: Watch) -> Judged:
+    def _judge(self, watch: Watch) -> Classified:
         if self.ending is Ending.FAILED:
             return failed(self.motion, self.cause)
         return judge(
@@ -249,13 +249,13 @@ class Run:
             "lyapunov": self._exponents(),
             "without_lyapunov": self.without_lyapunov or None,
             **self.figures(),
-            "winding_angle": float(winding_angle(self.motion.nodes)[-1]),
+            "winding_angle": float(azimuth(self.motion.nodes)[-1]),
             "precession": self._precession(),
             "time": float(self.motion.time[-1]),
             "window": [float(late.time[0]), float(late.time[-1])],
             "settled": asdict(self.settled) if self.settled else None,
             "settled_from": self.settled.since if self.settled else None,
-            "solved": self.arrival.told() if self.arrival else None,
+            "solved": self.arrival.as_dict() if self.arrival else None,
             "tight_from": self.tight_from,
             **asdict(self.health),
         }
@@ -263,8 +263,8 @@ class Run:
     def _exponents(self) -> dict[str, Any] | None:
         if self.lyapunov is None:
             return None
-        parting = self.separation and self.separation.told()
-        return {**self.lyapunov.told(), "finite_separation": parting}
+        parting = self.separation and self.separation.as_dict()
+        return {**self.lyapunov.as_dict(), "finite_separation": parting}
 
     def _precession(self) -> dict[str, float] | None:
         """Return how a body that is held in one direction goes round, which others do evenly."""

@@ -21,7 +21,7 @@ FINEST = 256
 
 
 @dataclass
-class Recent:
+class SampleBuffer:
     """Rows at multiples of an interval [T], without gaps.
 
     Attributes

@@ -102,7 +102,7 @@ class Settled:
 
 
 @dataclass(frozen=True)
-class Pace:
+class MotionRates:
     """How the system moved at an instant, measured as the integrator measures: see `size`."""
 
     time: float
@@ -138,13 +138,13 @@ class Watch:
     start: float
     compare: Compare = aligned_distance
     brief: bool = False
-    paces: deque[Pace] = field(default_factory=lambda: deque(maxlen=MOST_LOOKS))
+    paces: deque[MotionRates] = field(default_factory=lambda: deque(maxlen=MOST_LOOKS))
     returns: deque[tuple[float, Nodes]] = field(
         default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MOST_MAXIMA)
     )
     seen: int = 0
 
-    def note(self, pace: Pace, returns: Sequence[tuple[float, Nodes]]) -> None:
+    def note(self, pace: MotionRates, returns: Sequence[tuple[float, Nodes]]) -> None:
         """Take down the pace at a look, and times and shapes at energy maxima since the last."""
         self.paces.append(pace)
         self.seen += len(returns)
@@ -162,7 +162,7 @@ class Watch:
     def note_arrays(self, saved: Mapping[str, Array]) -> None:
         """Take down what `to_arrays` gave."""
         self.seen = int(saved["seen"])
-        self.paces.extend(Pace(*map(float, row)) for row in saved["paces"])
+        self.paces.extend(MotionRates(*map(float, row)) for row in saved["paces"])
         times = map(float, saved["return_times"])
         self.returns.extend(zip(times, saved["return_nodes"], strict=True))
 

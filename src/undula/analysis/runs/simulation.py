@@ -16,10 +16,10 @@ import numpy as np
 
 from undula.analysis.observables.alignment import comparison
 from undula.analysis.run_settings import Ending, Schedule
-from undula.analysis.runs.early_stop import Arrival, Lookout
+from undula.analysis.runs.early_stop import ReachedState, StateDetector
 from undula.analysis.runs.memory_needed import refuse_too_large
-from undula.analysis.runs.sample_buffer import Recent, parts_of
-from undula.analysis.runs.settling import Pace, Settled, Watch
+from undula.analysis.runs.sample_buffer import SampleBuffer, parts_of
+from undula.analysis.runs.settling import MotionRates, Settled, Watch
 from undula.arrays import Array, State
 from undula.errors import InputError
 from undula.models.given_shapes import numbers, refuse_misfits
@@ -27,7 +27,7 @@ from undula.models.model import Model
 from undula.numerics.integration import stepper_state as names
 from undula.numerics.integration.schemes import NDF
 from undula.numerics.integration.status import Status
-from undula.numerics.integration.stepper_state import Memory, start
+from undula.numerics.integration.stepper_state import StepperState, start
 from undula.numerics.integration.system import RATES
 from undula.numerics.integration.time_loop import advance
 
@@ -71,30 +71,32 @@ class Simulation:
 
     model: Model
     schedule: Schedule
-    memory: Memory
+    memory: StepperState
     interval: float
     rows: list[Array] = field(default_factory=list)
     ending: Ending = Ending.RUNNING
     settled: Settled | None = None
-    arrival: Arrival | None = None
+    arrival: ReachedState | None = None
     tight_from: float | None = None
     shown_until: float = 0.0
     cause: str = ""
-    recent: Recent = field(default_factory=Recent)
+    recent: SampleBuffer = field(default_factory=SampleBuffer)
     sampled: int = field(init=False)
-    marks: deque[Memory] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
+    marks: deque[StepperState] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
 
     def __post_init__(self) -> None:
         """Make what follows from the rest."""
         self.sampled = sum(map(len, self.rows))  # asked for several times a look
         self.options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
-        departure = self.model.departure(self.model.positions(first[:-RATES]))
-        if departure <= ROUND_OFF * self.model.links:
-            departure = 0.0
+        tangent_distance = self.model.tangent_distance(self.model.positions(first[:-RATES]))
+        if tangent_distance <= ROUND_OFF * self.model.links:
+            tangent_distance = 0.0
         compare = comparison(axisymmetric=self.model.axisymmetric)
-        self.watch = Watch(self.schedule.rtol, departure, compare, self.schedule.until == "solved")
-        self.lookout = Lookout(self.model)
+        self.watch = Watch(
+            self.schedule.rtol, tangent_distance, compare, self.schedule.until == "solved"
+        )
+        self.lookout = StateDetector(self.model)
         self.marks.append(copied(self.memory))
 
     @classmethod
@@ -239,9 +241,9 @@ class Simulation:
         self.marks.clear()  # whose steps were others
         self.__post_init__()
 
-    def _pace(self) -> Pace:
+    def _pace(self) -> MotionRates:
         real = self.memory.real
-        return Pace(
+        return MotionRates(
             time=float(real[names.TIME]),
             shape_speed=float(real[names.SHAPE_SPEED]),
             displacement=float(real[names.DISPLACEMENT]),
@@ -256,10 +258,10 @@ class Simulation:
         """Time from which on the run can be sampled again [T]."""
         return float(self.marks[0].real[names.TIME])
 
-    def mark_before(self, time: float) -> Memory:
+    def mark_before(self, time: float) -> StepperState:
         """Return the last mark at or before a time, from the earliest mark to the end [T]."""
         earlier = (mark for mark in reversed(self.marks) if mark.real[names.TIME] <= time)
-        found: Memory = next(earlier)
+        found: StepperState = next(earlier)
         return found
 
     def checkpoint(self) -> dict[str, Array]:
@@ -278,7 +280,7 @@ class Simulation:
     def resume(cls, model: Model, schedule: Schedule, saved: Mapping[str, Array]) -> Self:
         """Return the run that a checkpoint was taken of, ready to go on to `schedule`'s end."""
         memory, mark = (
-            Memory(*(np.array(saved[f"{prefix}_{name}"]) for name in Memory._fields))
+            StepperState(*(np.array(saved[f"{prefix}_{name}"]) for name in StepperState._fields))
             for prefix in ("mark", "memory")[::-1]
         )
         refuse_too_large(model, schedule)
@@ -295,6 +297,6 @@ class Simulation:
         return simulation
 
 
-def copied(memory: Memory) -> Memory:
+def copied(memory: StepperState) -> StepperState:
     """Return a memory that stays as it is when the run goes on."""
-    return Memory(*(array.copy() for array in memory))
+    return StepperState(*(array.copy() for array in memory))

@@ -23,7 +23,7 @@ _SHORT, _LONG = 0.01, 0.02
 
 
 @dataclass(frozen=True)
-class Birth:
+class Criticality:
     """How a branch leaves its Hopf point.
 
     Attributes
@@ -41,16 +41,16 @@ class Birth:
 
     kind: Literal["spinning", "flapping"]
     force: float
-    bend: float
-    bend_error: float
+    quadratic_coefficient: float
+    quadratic_coefficient_error: float
 
     @property
     def supercritical(self) -> bool:
         """Whether the branch exists beyond the Hopf force."""
-        return self.bend > 0.0
+        return self.quadratic_coefficient > 0.0
 
 
-def births(model: Model) -> tuple[Birth, ...] | NotFound:
+def criticality(model: Model) -> tuple[Criticality, ...] | NotFound:
     """Return how spinning, unless the model is confined, and flapping are born.
 
     Parameters
@@ -58,38 +58,39 @@ def births(model: Model) -> tuple[Birth, ...] | NotFound:
     model : Model
         Its own force does not matter.
     """
-    found = []
+    of_kinds = []
     for kind in ("flapping", "spinning") if model.dimension == 3 else ("flapping",):
-        birth = birth_of(model, kind)
-        if isinstance(birth, NotFound):
-            return birth
-        found.append(birth)
-    return tuple(found)
+        found = criticality_of(model, kind)
+        if isinstance(found, NotFound):
+            return found
+        of_kinds.append(found)
+    return tuple(of_kinds)
 
 
-def birth_of(model: Model, kind: str) -> Birth | NotFound:
+def criticality_of(model: Model, kind: str) -> Criticality | NotFound:
     """Return how a kind of state is born, "spinning" or "flapping"."""
     start = (spinning_start if kind == "spinning" else flapping_start)(model)
     if start is None:
         return NotFound("the straight state stays stable, so that nothing is born")
-    birth = _birth(kind, *start)
-    return birth or NotFound(f"Newton's method finds no {kind} next to the Hopf point")
+    found = _criticality(kind, *start)
+    return found or NotFound(f"Newton's method finds no {kind} next to the Hopf point")
 
 
-def born_downwards(model: Model, kind: str) -> bool:
+def is_subcritical(model: Model, kind: str) -> bool:
     """Tell whether a kind of state is found to be born downwards, "spinning" or "flapping"."""
-    birth = birth_of(model, kind)
-    return isinstance(birth, Birth) and not birth.supercritical
+    found = criticality_of(model, kind)
+    return isinstance(found, Criticality) and not found.supercritical
 
 
-def _birth(kind: str, problem: Problem, start: Point) -> Birth | None:
-    bends = []
+def _criticality(kind: str, problem: Problem, start: Point) -> Criticality | None:
+    coefficients = []
     for length in (_SHORT, _LONG):
         point = advance(problem, start, length, start.p)
         if point is None:
             return None
         away = problem.weights @ (point.u - start.u) ** 2
-        bends.append((point.p - start.p) / away)
+        coefficients.append((point.p - start.p) / away)
     # The next term is of the square of the amplitude, four times larger for the longer one.
-    bend = bends[0] + (bends[0] - bends[1]) / 3.0
-    return Birth(kind, start.p, float(bend), float(np.abs(bend - bends[0])))  # type: ignore[arg-type]
+    quadratic_coefficient = coefficients[0] + (coefficients[0] - coefficients[1]) / 3.0
+    error = np.abs(quadratic_coefficient - coefficients[0])
+    return Criticality(kind, start.p, float(quadratic_coefficient), float(error))  # type: ignore[arg-type]

@@ -37,7 +37,7 @@ from undula.numerics.orbits.periodic_orbit import (
     time_error,
 )
 from undula.numerics.orbits.shooting import Shooting, Shot
-from undula.numerics.orbits.symmetry import Closure
+from undula.numerics.orbits.symmetry import OrbitSymmetry
 
 # Steps of half a beat, of order 9: the relative error of the frequency is then some 1e-11 to 1e-8,
 # which each answer states for itself.
@@ -147,9 +147,9 @@ def flapping_unknowns(state: Flapping) -> Array:
 
 def _shooting(model: Model, parameter: str) -> Shooting:
     flat = model.with_(confined=True)
-    return (_Continuous if flat.winds else Shooting)(
+    return (_Continuous if flat.unwrapped else Shooting)(
         equations_at=lambda p: changed(flat, parameter, p).equations,
-        closure=Closure(flat.equations.mirrored),
+        closure=OrbitSymmetry(flat.equations.mirrored),
         intervals=INTERVALS,
         method=METHOD,
     )
@@ -211,7 +211,7 @@ def _keeps_turns(flat: Model, shot: Shot) -> bool:
     """
     ends = shot.flow.stages[:, -1]
     angles = flat.joint_angles(np.concatenate([flat.equations.mirrored(ends[-1:]), ends]))
-    return not flat.winds or float(np.abs(np.diff(angles, axis=0)).max()) < np.pi
+    return not flat.unwrapped or float(np.abs(np.diff(angles, axis=0)).max()) < np.pi
 
 
 def _beginning(flat: Model, nodes: Array, energies: Array) -> Array:
@@ -219,7 +219,7 @@ def _beginning(flat: Model, nodes: Array, energies: Array) -> Array:
 
     Joints that wind up are found again from positions where they are wound up least.
     """
-    return np.asarray(nodes[np.argmin(energies) if flat.winds else -1])
+    return np.asarray(nodes[np.argmin(energies) if flat.unwrapped else -1])
 
 
 def _positions(flat: Model, nodes: Array) -> Array:

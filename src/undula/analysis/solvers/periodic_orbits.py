@@ -33,7 +33,7 @@ from undula.numerics.orbits.periodic_orbit import (
     orbit_at,
 )
 from undula.numerics.orbits.shooting import Shooting, Shot
-from undula.numerics.orbits.symmetry import Closure, Rotation
+from undula.numerics.orbits.symmetry import OrbitSymmetry, Rotation
 
 # A motion that turns back with less variation of its energy than this, over the mean, has become a
 # steady one.
@@ -55,7 +55,7 @@ def periodic_unknowns(state: Periodic) -> Array:
     return np.concatenate([state.start, last])
 
 
-def follow_born(
+def follow_from_bifurcation(
     bifurcation: Bifurcation[Flapping],
     to: float,
     *,
@@ -137,7 +137,7 @@ def periodic_shooting(model: Model, parameter: str, intervals: int) -> Shooting:
 
     return Shooting(
         equations_at=lambda p: changed(model, parameter, p).equations,
-        closure=Closure(rotation=Rotation(rotate, generator) if model.axisymmetric else None),
+        closure=OrbitSymmetry(rotation=Rotation(rotate, generator) if model.axisymmetric else None),
         intervals=intervals,
         method=METHOD,
     )

@@ -68,10 +68,10 @@ def find_periodic(
         guess = integrate(model, kicked(model, seed=1 if seed is None else seed), until="settled")
         if guess.ending is Ending.INTERRUPTED:
             raise KeyboardInterrupt  # which a run takes as its end, with what there is
-    return come_to(model, Seen.of(guess))
+    return reached(model, Seen.of(guess))
 
 
-def come_to(model: Model, seen: Seen) -> Periodic | NotFound:
+def reached(model: Model, seen: Seen) -> Periodic | NotFound:
     """Return the motion that a run has come to: a stable one if there is one at its end."""
     failed = NotFound(
         f"the run does not repeat itself ({seen.verdict}); run until it has settled, or look for"

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from undula.analysis.parameters import changed
-from undula.analysis.solvers.state_kinds import follow, kind_named
+from undula.analysis.solvers.state_kinds import follow, kind_of_state
 from undula.analysis.states.branch import Bifurcation
 from undula.analysis.states.extrapolation import Converged, converge
 from undula.analysis.states.follow_branch import Progress
@@ -18,7 +18,7 @@ _NEARBY = (0.05, 0.25)
 _HALVINGS = 20
 
 
-def found_again(
+def refind_bifurcation(
     known: Bifurcation[Any],
     model: Model,
     parameter: str,
@@ -57,7 +57,7 @@ def _between(
     is_it: Callable[[Bifurcation[Any]], bool],
     progress: Progress | None,
 ) -> Bifurcation[Any] | NotFound:
-    begun = kind_named(known.state).find(changed(model, parameter, ends[0]), known.state)
+    begun = kind_of_state(known.state).find(changed(model, parameter, ends[0]), known.state)
     if isinstance(begun, NotFound):
         return begun
     branch = follow(begun, parameter, ends[1], progress=progress, enough=is_it)
@@ -86,7 +86,7 @@ def limit_of(known: Bifurcation[Any], parameter: str) -> Converged[Any] | NotFou
     def again(model: Model, coarser: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
         if coarser is None and model.links == first.links:
             return known
-        return found_again(coarser or known, model, parameter, lambda one: alike(one, known))
+        return refind_bifurcation(coarser or known, model, parameter, lambda one: alike(one, known))
 
     return converge(first, again, quantities_of)
 

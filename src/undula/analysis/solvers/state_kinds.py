@@ -124,7 +124,7 @@ _NAMES = {
 Solved = Spinning | Flapping | Equilibrium | Periodic
 
 
-def kind_of(name: str) -> Kind:
+def kind_by_name(name: str) -> Kind:
     """Return the kind of a name.
 
     Raises
@@ -146,14 +146,14 @@ def with_error(state: Solved) -> Solved:
         return state  # what rests has no frequency
 
     def again(other: Model) -> float | None:
-        found = kind_named(state).find(other, state)
+        found = kind_of_state(state).find(other, state)
         return None if isinstance(found, NotFound) else float(found.frequency)
 
     by_links = error_of_links(state.model, state.frequency, again)
     return state if by_links is None else replace(state, error=by_links + state.solver_error)
 
 
-def converged(
+def extrapolate(
     model: Model,
     kind: str,
     guess: Any = None,
@@ -177,7 +177,7 @@ def converged(
     InputError
         There is no such kind, or the links of the model are its body.
     """
-    chosen = kind_of(kind)
+    chosen = kind_by_name(kind)
 
     def find(finer: Model, coarser: Any) -> Any:
         if progress:
@@ -219,7 +219,7 @@ def follow(
         There is no such parameter, or it is a whole number, or `to` is where the state is or out of
         the parameter's range, or there are no such states on the way.
     """
-    kind, start = kind_named(state), value_of(state.model, parameter)
+    kind, start = kind_of_state(state), value_of(state.model, parameter)
     model = model_along(state.model, _NAMES[type(state)], parameter, (start, to))
     if to == start:
         raise InputError(f"{parameter} is {start} already; give another value to follow to")
@@ -262,7 +262,7 @@ def follow_from_onset(
     InputError
         There is no such kind, or `to` does not lie beyond the Hopf force.
     """
-    chosen = kind_of(kind)
+    chosen = kind_by_name(kind)
     began = chosen.start(model)
     if began is None:
         return NotFound("the straight state stays stable, so that no branch begins at it")
@@ -282,6 +282,6 @@ def follow_from_onset(
     )
 
 
-def kind_named(state: Solved) -> Kind:
+def kind_of_state(state: Solved) -> Kind:
     """Return the kind that a state is of."""
     return KINDS[_NAMES[type(state)]]

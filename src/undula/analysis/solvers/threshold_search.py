@@ -9,11 +9,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from undula.analysis.linear.stability import critical_force
+from undula.analysis.linear.stability import onset
 from undula.analysis.parameters import FORCE, changed
-from undula.analysis.solvers.criticality import born_downwards
-from undula.analysis.solvers.refind import found_again
-from undula.analysis.solvers.state_kinds import Solved, follow, follow_from_onset, kind_of
+from undula.analysis.solvers.criticality import is_subcritical
+from undula.analysis.solvers.refind import refind_bifurcation
+from undula.analysis.solvers.state_kinds import Solved, follow, follow_from_onset, kind_by_name
 from undula.analysis.solvers.symmetry import require_space, require_turning
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.follow_branch import Progress
@@ -84,7 +84,7 @@ def search(
     """
     check(model, wanted)
     if near is not None:
-        found = found_again(near, model, FORCE, wanted.is_it, progress)
+        found = refind_bifurcation(near, model, FORCE, wanted.is_it, progress)
         if not isinstance(found, NotFound) and (up_to is None or found.value <= up_to):
             return found
     ends = _ends(model, wanted.kind, up_to)
@@ -113,10 +113,10 @@ def _ends(model: Model, kind: str, up_to: float | None) -> tuple[float, float] |
     """Return the forces between which a kind of state is followed."""
     if kind == "equilibrium":
         return 0.0, up_to or FARTHEST * _ONSET_AT_REST
-    onset = critical_force(model, method="discrete", later=0)
-    if onset.force is None:
-        return NotFound(str(onset))
-    return _BEGINNING * onset.force, up_to or FARTHEST * onset.force
+    straight_onset = onset(model, method="discrete", later=0)
+    if straight_onset.force is None:
+        return NotFound(str(straight_onset))
+    return _BEGINNING * straight_onset.force, up_to or FARTHEST * straight_onset.force
 
 
 def _branches(
@@ -124,7 +124,7 @@ def _branches(
 ) -> Iterator[Branch[Any] | NotFound]:
     """Yield the branch of a kind of state in pieces, upwards from where it begins."""
     start, end = ends
-    if wanted.kind != "equilibrium" and born_downwards(model, wanted.kind):
+    if wanted.kind != "equilibrium" and is_subcritical(model, wanted.kind):
         born = follow_from_onset(model, wanted.kind, start, progress=progress)
         if isinstance(born, NotFound):
             yield born
@@ -140,7 +140,7 @@ def _branches(
             searched_to=end,
         )
         return
-    state: Solved | NotFound = kind_of(wanted.kind).find(changed(model, FORCE, start))
+    state: Solved | NotFound = kind_by_name(wanted.kind).find(changed(model, FORCE, start))
     first = (start or _ONSET_AT_REST) * FARTHEST
     for place in _stretches(start, min(first, end), end):
         if isinstance(state, NotFound):

@@ -12,10 +12,10 @@ from functools import partial
 from typing import Any
 
 from undula.analysis.linear.results import Method, Onset
-from undula.analysis.linear.stability import critical_force, method_for_all
+from undula.analysis.linear.stability import method_for_all, onset
 from undula.analysis.parameters import FORCE, changed
 from undula.analysis.solvers.equilibrium import Equilibrium
-from undula.analysis.solvers.refind import alike, found_again, quantities_of
+from undula.analysis.solvers.refind import alike, quantities_of, refind_bifurcation
 from undula.analysis.solvers.threshold_search import WANTED, Missed, search
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation
@@ -109,7 +109,7 @@ def threshold(
     up_to : float, optional
         The force at which the search ends [B/L^2], above 0; by default 20 times that of the onset.
     method : {"spectral", "modes", "discrete"}, optional
-        How the onset of a straight state is computed, as in `critical_force`.
+        How the onset of a straight state is computed, as in `onset`.
     progress : callable, optional
         Called with the number of links and each force that was reached.
 
@@ -201,36 +201,42 @@ def _onset(
 ) -> Threshold:
     """Return the onset of a straight state."""
     links: tuple[int, ...] = (model.links,)
-    if converged and model.continuum is None and model.with_links(2 * model.links) is not None:
+    if converged and model.continuum_load is None and model.with_links(2 * model.links) is not None:
         limit = converge(model, lambda finer, _: _crossing_of(finer), _of_crossing)
         if isinstance(limit, NotFound):
             return _none("onset", limit)
-        onset, links = limit.finest, limit.links
+        straight_onset, links = limit.finest, limit.links
         force, frequency = limit.values["value"], limit.values["frequency"]
         error = limit.errors["value"]
     else:
-        onset = critical_force(model, method=method, later=0)
-        if onset.hopf is None:
-            return Threshold("onset", None, reason=str(onset))
-        force, frequency, error = onset.hopf.force, onset.hopf.frequency, onset.hopf.error
+        straight_onset = onset(model, method=method, later=0)
+        if straight_onset.hopf is None:
+            return Threshold("onset", None, reason=str(straight_onset))
+        force, frequency, error = (
+            straight_onset.hopf.force,
+            straight_onset.hopf.frequency,
+            straight_onset.hopf.error,
+        )
     if up_to is not None and force > up_to:
         reason = f"the straight state is stable up to force {up_to:.6g}"
         return Threshold("onset", None, reason=reason, searched_to=up_to)
-    assert onset.hopf is not None
+    assert straight_onset.hopf is not None
     return Threshold(
         "onset",
         force,
         error,
         frequency,
         bifurcation="Hopf",
-        links=links if onset.method == "discrete" else (),
-        solver_error=onset.hopf.round_off if onset.method == "discrete" else error,
+        links=links if straight_onset.method == "discrete" else (),
+        solver_error=straight_onset.hopf.round_off
+        if straight_onset.method == "discrete"
+        else error,
     )
 
 
 def _crossing_of(model: Model) -> Onset | NotFound:
-    onset = critical_force(model, method="discrete", later=0)
-    return NotFound(str(onset)) if onset.hopf is None else onset
+    straight_onset = onset(model, method="discrete", later=0)
+    return NotFound(str(straight_onset)) if straight_onset.hopf is None else straight_onset
 
 
 def _of_crossing(onset: Onset) -> dict[str, float]:
@@ -245,7 +251,7 @@ def _none(kind: str, found: NotFound) -> Threshold:
 
 def _error_of_links(found: Bifurcation[Any], model: Model) -> float | None:
     def again(other: Model) -> float | None:
-        same = found_again(found, other, FORCE, lambda one: alike(one, found))
+        same = refind_bifurcation(found, other, FORCE, lambda one: alike(one, found))
         return None if isinstance(same, NotFound) else same.value
 
     return error_of_links(model, found.value, again)

@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from undula.analysis.maps.stability_boundaries import Borders
+from undula.analysis.maps.stability_boundaries import StabilityBoundaries
 from undula.analysis.parameters import FORCE
 from undula.errors import InputError
 from undula.interrupts import interruptible
@@ -28,7 +28,7 @@ from undula.terminal.progress import swept
 _PATIENCE = 0.2
 
 
-def borders_of(path: Path, store: xr.Dataset) -> Borders | None:
+def borders_of(path: Path, store: xr.Dataset) -> StabilityBoundaries | None:
     """Return the borders of a study; None if not all of them are there, as after Ctrl-C.
 
     Parameters
@@ -57,12 +57,12 @@ def borders_of(path: Path, store: xr.Dataset) -> Borders | None:
         busy = f"another undula solves for the borders of {path}; wait for it"
         try:
             with locked(path / NAME, busy):
-                _solve(path, store, Borders(parameter, values, up_to, ()), job, columns)
+                _solve(path, store, StabilityBoundaries(parameter, values, up_to, ()), job, columns)
         except LostError as lost:
             why = lost.told
     done = [column for column in columns if column is not None]
     if len(done) == len(columns):
-        return Borders(parameter, values, up_to, tuple(done))
+        return StabilityBoundaries(parameter, values, up_to, tuple(done))
     notice(
         f"{why} with {len(columns) - len(done)} of {len(columns)} columns of borders to go;"
         f" those so far are in {path}, the same command goes on"
@@ -71,7 +71,11 @@ def borders_of(path: Path, store: xr.Dataset) -> Borders | None:
 
 
 def _solve(
-    path: Path, store: xr.Dataset, empty: Borders, job: dict[str, Any], columns: list[Column | None]
+    path: Path,
+    store: xr.Dataset,
+    empty: StabilityBoundaries,
+    job: dict[str, Any],
+    columns: list[Column | None],
 ) -> None:
     """Fill in the columns that are missing, until Ctrl-C, and keep each."""
     missing = deque(index for index, column in enumerate(columns) if column is None)

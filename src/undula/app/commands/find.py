@@ -4,7 +4,7 @@ from typing import Any
 
 from undula.analysis.observables.shapes import Range
 from undula.analysis.solvers.equilibrium import Equilibrium
-from undula.analysis.solvers.state_kinds import Solved, converged, kind_of, with_error
+from undula.analysis.solvers.state_kinds import Solved, extrapolate, kind_by_name, with_error
 from undula.analysis.states.extrapolation import Converged, links_are_body
 from undula.analysis.states.periodic_record import Periodic
 from undula.analysis.states.records import NotFound, Spinning
@@ -12,7 +12,7 @@ from undula.app.commands.find_start import Beginning
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, CURE
 from undula.terminal.numbers import with_error as with_digits
-from undula.terminal.output import Told
+from undula.terminal.output import Answer
 from undula.terminal.progress import searching
 from undula.terminal.units_text import force_in, units_lines
 
@@ -27,7 +27,7 @@ _UNITS = {
 }
 
 
-def find(asked: Beginning, kind: str, *, converge: bool) -> Told:
+def find(asked: Beginning, kind: str, *, converge: bool) -> Answer:
     """Solve for a state; in the limit of many links if asked to.
 
     Raises
@@ -35,11 +35,11 @@ def find(asked: Beginning, kind: str, *, converge: bool) -> Told:
     InputError
         There is no such kind, or the model has no limit of many links.
     """
-    model, title, chosen = asked.model, asked.title, kind_of(kind)
+    model, title, chosen = asked.model, asked.title, kind_by_name(kind)
     with searching(f"finding {kind}") as tell:
         found: Any = asked.first()
         if converge and not isinstance(found, NotFound):
-            found = converged(model, kind, found, progress=tell)
+            found = extrapolate(model, kind, found, progress=tell)
         elif found is None:
             found = chosen.find(model)
     if isinstance(found, NotFound):
@@ -47,10 +47,10 @@ def find(asked: Beginning, kind: str, *, converge: bool) -> Told:
     answer = (
         _limit_answer(found) if isinstance(found, Converged) else state_answer(with_error(found))
     )
-    return Told(answer, _text(title, answer, body=links_are_body(model)))
+    return Answer(answer, _text(title, answer, body=links_are_body(model)))
 
 
-def not_found(reason: NotFound, title: str, units: Units) -> Told:
+def not_found(reason: NotFound, title: str, units: Units) -> Answer:
     """Return the answer that there is no state, with the advice what to try."""
     answer = {
         "status": "not found",
@@ -59,7 +59,7 @@ def not_found(reason: NotFound, title: str, units: Units) -> Told:
         "residual": reason.residual,
     }
     lines = [f"{title} not found: {reason.reason}", *units_lines(units.names())]
-    return Told(answer, "\n".join(lines))
+    return Answer(answer, "\n".join(lines))
 
 
 def state_answer(state: Solved) -> dict[str, Any]:

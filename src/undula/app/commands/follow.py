@@ -7,7 +7,7 @@ from typing import Any
 from undula.analysis.linear.straight_branch import StraightBranch, follow_straight
 from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.solvers.refind import limit_of
-from undula.analysis.solvers.state_kinds import follow, follow_from_onset, kind_of
+from undula.analysis.solvers.state_kinds import follow, follow_from_onset, kind_by_name
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.extrapolation import Converged, links_are_body
@@ -18,7 +18,7 @@ from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, CURE, LINKS, told_of
-from undula.terminal.output import Told
+from undula.terminal.output import Answer
 from undula.terminal.progress import approached
 from undula.terminal.units_text import force_in, units_lines
 
@@ -46,7 +46,7 @@ class Way:
 
 def follow_along(
     model: Model, kind: str, way: Way, *, converge: bool, title: str
-) -> tuple[Told, Branch[Any] | StraightBranch | None]:
+) -> tuple[Answer, Branch[Any] | StraightBranch | None]:
     """Follow a state; return the answer, and the branch unless there is no state to begin at.
 
     Raises
@@ -73,7 +73,9 @@ def follow_along(
     return _told(answer, f"{title}: {kind}", model.units), found
 
 
-def _straight(model: Model, way: Way, *, converge: bool, title: str) -> tuple[Told, StraightBranch]:
+def _straight(
+    model: Model, way: Way, *, converge: bool, title: str
+) -> tuple[Answer, StraightBranch]:
     if converge:
         raise InputError("the straight state is converged already; leave --converge out")
     if way.start is None:
@@ -95,7 +97,7 @@ def _from_onset(
 def _between(
     model: Model, kind: str, way: Way, start: float, stop: Callable[[], bool]
 ) -> Branch[Any] | NotFound:
-    chosen = kind_of(kind)
+    chosen = kind_by_name(kind)
     along = model_along(model, kind, way.parameter, (start, way.end))
     begun = chosen.find(changed(along, way.parameter, start))
     if isinstance(begun, NotFound):
@@ -189,7 +191,7 @@ def _with_force(bifurcation: dict[str, Any], units: Units) -> dict[str, Any]:
     return bifurcation | force_in(units, bifurcation.get(FORCE))
 
 
-def _told(answer: dict[str, Any], title: str, units: Units) -> Told:
+def _told(answer: dict[str, Any], title: str, units: Units) -> Answer:
     name = answer["parameter"]
     first, last = answer["points"][0], answer["points"][-1]
     lines = [
@@ -205,7 +207,7 @@ def _told(answer: dict[str, Any], title: str, units: Units) -> Told:
         *(_bifurcation_line(one, units) for one in answer["bifurcations"]),
         *([f"  born {answer['birth']}ly at the onset"] if "birth" in answer else []),
     ]
-    return Told(answer, "\n".join(lines))
+    return Answer(answer, "\n".join(lines))
 
 
 def _bifurcation_line(one: dict[str, Any], units: Units) -> str:

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from undula.analysis.maps.basins import basins
-from undula.analysis.maps.contradictions import Disagreement, disagreements
-from undula.analysis.maps.stability_boundaries import BORDERS, Borders
+from undula.analysis.maps.contradictions import Disagreement, contradictions
+from undula.analysis.maps.stability_boundaries import BORDERS, StabilityBoundaries
 from undula.analysis.parameters import FORCE
 from undula.app.commands.boundaries import borders_of
 from undula.app.commands.drawing import FORMATS, beside, check_figure_name, save_figure
@@ -19,7 +19,7 @@ from undula.errors import InputError
 from undula.inputs.ranges import parse_axis
 from undula.schema.sweep_axes import TRY, chosen, varied
 from undula.storage.outputs import Claim, claimed
-from undula.sweeps.store import load_study
+from undula.sweeps.store import load_sweep
 from undula.terminal.output import DONE, STOPPED_EARLY, reply
 from undula.views import basin_diagram, gallery, mean_paths, phase_diagram, phase_page
 
@@ -55,7 +55,7 @@ def plot_study(path: Path, asked: Asked, *, as_json: bool) -> int:
         if asked.borders and found is None:
             reply({"status": "interrupted", "store": str(path)}, "", as_json=as_json)
             return STOPPED_EARLY
-        wrong = disagreements(store, found) if found else ()
+        wrong = contradictions(store, found) if found else ()
         _draw(store, asked.view, found, wrong, figure, claim)
     shares = basins(store) if store.sizes[TRY] > 1 else None
     answer = diagram_answer(store, found, wrong, shares) | {"figure": str(figure)}
@@ -79,7 +79,7 @@ def _figure_path(path: Path, asked: Asked) -> Path:
 def _part(path: Path, asked: Asked, *, with_shapes: bool) -> xr.Dataset:
     """Return what was chosen of a study, in memory."""
     at = dict(_chosen_value(text) for text in asked.at)
-    store = chosen(load_study(path, shapes=with_shapes), at).load()
+    store = chosen(load_sweep(path, shapes=with_shapes), at).load()
     if len(varied(store)) > 2:
         several = ", ".join(varied(store))
         raise InputError(
@@ -99,7 +99,7 @@ def _chosen_value(text: str) -> tuple[str, float]:
 def _draw(
     store: xr.Dataset,
     view: str,
-    found: Borders | None,
+    found: StabilityBoundaries | None,
     wrong: Sequence[Disagreement],
     figure: Path,
     claim: Claim,
@@ -121,7 +121,7 @@ def _draw(
     save_figure(drawn, figure, claim)
 
 
-def _lines(found: Borders) -> list[tuple[str, Any, Any]]:
+def _lines(found: StabilityBoundaries) -> list[tuple[str, Any, Any]]:
     """Return the borders that have a force somewhere, as the views draw them."""
     values = np.array(found.values)
     curves = [(name, values, found.curve(name)[0]) for name in BORDERS]

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from undula.analysis.maps.contradictions import Disagreement
-from undula.analysis.maps.stability_boundaries import BORDERS, Borders
+from undula.analysis.maps.stability_boundaries import BORDERS, StabilityBoundaries
 from undula.analysis.states.extrapolation import links_are_body
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
@@ -22,7 +22,7 @@ _MOST_LINES = 20
 
 def diagram_answer(
     store: xr.Dataset,
-    borders: Borders | None,
+    borders: StabilityBoundaries | None,
     wrong: Sequence[Disagreement],
     shares: xr.Dataset | None,
 ) -> dict[str, Any]:
@@ -71,7 +71,7 @@ def diagram_text(answer: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _border(borders: Borders, name: str) -> Iterator[dict[str, Any]]:
+def _border(borders: StabilityBoundaries, name: str) -> Iterator[dict[str, Any]]:
     forces, errors = borders.curve(name)
     for index, value in enumerate(borders.values):
         known = bool(np.isfinite(forces[index]))

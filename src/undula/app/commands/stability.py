@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.linear.results import CriticalCurve, GrowthCurve, Onset, Spectrum
-from undula.analysis.linear.stability import critical_curve, critical_force, growth_curve, spectrum
+from undula.analysis.linear.stability import critical_curve, growth_curve, onset, spectrum
 from undula.analysis.parameters import changed
 from undula.app.commands import stability_text as text
 from undula.inputs.build import build_model
 from undula.inputs.input import StabilityInput
 from undula.models.model import Model
 from undula.models.units import Units
-from undula.terminal.output import Told
+from undula.terminal.output import Answer
 from undula.terminal.progress import counted
 from undula.terminal.units_text import force_in
 
@@ -45,7 +45,7 @@ class Question:
     along: tuple[str, Values] | None
 
 
-def ask(question: Question) -> tuple[Told, Callable[[], Any]]:
+def ask(question: Question) -> tuple[Answer, Callable[[], Any]]:
     """Answer a question; return the answer, and what draws it.
 
     Raises
@@ -60,26 +60,28 @@ def ask(question: Question) -> tuple[Told, Callable[[], Any]]:
     else:
         answered, draw = _ask_onset(question)
     head = {"status": "done", "load": _title(question)}
-    return Told(head | answered.answer, answered.text), draw
+    return Answer(head | answered.answer, answered.text), draw
 
 
-def _ask_onset(question: Question) -> tuple[Told, Callable[[], Any]]:
+def _ask_onset(question: Question) -> tuple[Answer, Callable[[], Any]]:
     model, options = _model(question)
-    onset, at_force = critical_force(model, **options), spectrum(model, **options)
+    straight_onset, at_force = onset(model, **options), spectrum(model, **options)
     title, units = _title(question), model.units
 
     def draw() -> Any:
         from undula.views import stability_portrait
 
-        far = _BEYOND * max(onset.force or 0.0, at_force.force, 1.0)
+        far = _BEYOND * max(straight_onset.force or 0.0, at_force.force, 1.0)
         growth = growth_curve(model, np.linspace(0.0, far, _SHOWN), **options)
-        return stability_portrait(onset, growth, at_force, title=title, units=units.names())
+        return stability_portrait(
+            straight_onset, growth, at_force, title=title, units=units.names()
+        )
 
-    told = text.onset_text(title, onset, at_force, units)
-    return Told(onset_answer(onset, at_force, units), told), draw
+    told = text.onset_text(title, straight_onset, at_force, units)
+    return Answer(onset_answer(straight_onset, at_force, units), told), draw
 
 
-def _ask_growth(question: Question, forces: Values) -> tuple[Told, Callable[[], Any]]:
+def _ask_growth(question: Question, forces: Values) -> tuple[Answer, Callable[[], Any]]:
     model, options = _model(question)
     name, values = question.along or (None, None)
     with counted("growth rates") as progress:
@@ -93,12 +95,12 @@ def _ask_growth(question: Question, forces: Values) -> tuple[Told, Callable[[], 
 
         return growth_figure(growth, title=title, units=units.names())
 
-    return Told(growth_answer(growth, units), text.growth_text(title, growth, units)), draw
+    return Answer(growth_answer(growth, units), text.growth_text(title, growth, units)), draw
 
 
 def _ask_thresholds(
     question: Question, name: str, values: Values
-) -> tuple[Told, Callable[[], Any]]:
+) -> tuple[Answer, Callable[[], Any]]:
     model, options = _model(question)
     with counted("thresholds") as progress:
         curve = critical_curve(model, name, values, progress=progress, **options)
@@ -111,7 +113,7 @@ def _ask_thresholds(
 
         return threshold_figure(curve, title=title, units=model.units.names())
 
-    return Told(thresholds_answer(curve, units), text.thresholds_text(title, curve, units)), draw
+    return Answer(thresholds_answer(curve, units), text.thresholds_text(title, curve, units)), draw
 
 
 def onset_answer(onset: Onset, at_force: Spectrum, units: Units) -> dict[str, Any]:

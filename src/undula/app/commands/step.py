@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from undula.analysis.parameters import FORCE
-from undula.analysis.ramps.ramp import Course, Step, settle_and_step
+from undula.analysis.ramps.ramp import Ramp, Step, ramp
 from undula.analysis.run_settings import Ending
 from undula.analysis.solvers.thresholds import THRESHOLDS, Threshold, threshold
 from undula.app.commands.drawing import beside, save_figure
@@ -21,15 +21,15 @@ from undula.storage.outputs import Claim, claimed
 from undula.storage.ramp_file import (
     Series,
     dataset_of_steps,
-    load_steps,
+    load_ramp,
     refuse_another_series,
     stored_steps,
-    write_steps,
+    write_ramp,
 )
 from undula.terminal.compile_notice import compilation_announced
 from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
 from undula.terminal.progress import searching, stepped
-from undula.views import step_diagram
+from undula.views import ramp_diagram
 
 #: Least seconds between two times that the steps so far are written.
 SAVE_EVERY = 2.0
@@ -61,7 +61,7 @@ def plan(wanted: RunInput, along: str, *, back: bool, kick: float, seed: int) ->
     InputError
         The parameter, one of its values or the kick is wrong.
     """
-    course = Course(*parse_steps("--along", along), back=back, kick=kick, seed=seed)
+    course = Ramp(*parse_steps("--along", along), back=back, kick=kick, seed=seed)
     model = build_model(wanted)
     course.models(model)
     return Series(wanted.dump(), wanted.tell({course.parameter}), model, course)
@@ -121,7 +121,7 @@ def step_along(job: Job, *, budget: float, as_json: bool) -> int:
 def _taken_up(job: Job) -> list[Step]:
     """Return the steps of an earlier call."""
     try:
-        stored = load_steps(job.result)
+        stored = load_ramp(job.result)
     except InputError as error:
         raise InputError(f"{error}, or start afresh with --overwrite") from error
     refuse_another_series(job.result, stored, job.series)
@@ -130,36 +130,36 @@ def _taken_up(job: Job) -> list[Step]:
 
 def _carry_on(job: Job, steps: list[Step], budget: float, interrupted: Callable[[], bool]) -> str:
     """Append the missing steps, as far as time and patience go; return how it ended."""
-    series, stops, before = job.series, job.series.course.stops, len(steps)
+    series, targets, before = job.series, job.series.course.targets, len(steps)
     first = series.course.models(series.model)[0]
     start = first.straight() if steps else build_start(job.wanted, first)
     keep = _Keeper(job)
     ending = "done"
     try:
         with (
-            stepped("stepping", series.course.parameter, before, len(stops)) as tell,
+            stepped("stepping", series.course.parameter, before, len(targets)) as tell,
             compilation_announced(notice),
         ):
-            for step in settle_and_step(
+            for step in ramp(
                 series.model,
                 series.course,
                 start,
                 build_schedule(job.wanted),
                 before=tuple(steps),
                 budget=budget,
-                progress=lambda run: tell(len(steps), stops[len(steps)][0], run.time),
+                progress=lambda run: tell(len(steps), targets[len(steps)][0], run.time),
             ):
                 steps.append(step)
                 keep(steps)
-                if interrupted() and len(steps) < len(stops):
+                if interrupted() and len(steps) < len(targets):
                     raise KeyboardInterrupt
     except KeyboardInterrupt:
         if not steps:
             raise
         ending = "interrupted"
     if len(steps) > before:
-        write_steps(job.result, series, steps)
-    return "out of time" if ending == "done" and len(steps) < len(stops) else ending
+        write_ramp(job.result, series, steps)
+    return "out of time" if ending == "done" and len(steps) < len(targets) else ending
 
 
 class _Keeper:
@@ -173,7 +173,7 @@ class _Keeper:
         if began < self._due:
             return
         try:
-            write_steps(self._job.result, self._job.series, steps)
+            write_ramp(self._job.result, self._job.series, steps)
         except InputError as error:
             notice(f"the steps so far are not stored: {error}")
         now = time.monotonic()
@@ -212,7 +212,7 @@ def _draw(
         return None
     values = {one.kind: one.value for one in found if one.value is not None}
     try:
-        figure = step_diagram([dataset_of_steps(job.series, steps)], thresholds=[values])
+        figure = ramp_diagram([dataset_of_steps(job.series, steps)], thresholds=[values])
         save_figure(figure, path, claim)
     except InputError as error:
         notice(f"{error}; the steps are stored in {job.result}")
@@ -231,7 +231,7 @@ def _tell_of_trouble(job: Job, status: str, steps: Sequence[Step]) -> bool:
             f"{len(failed)} of {len(steps)} steps failed, the first at {failed[0].value:.6g}"
             f" ({failed[0].cause}); each of the next began where the one before had come to"
         )
-    total = len(job.series.course.stops)
+    total = len(job.series.course.targets)
     if status != "done":
         why = "interrupted" if status == "interrupted" else "out of its budget of time"
         notice(

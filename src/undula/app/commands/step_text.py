@@ -45,7 +45,7 @@ def step_answer(
         "load": series.load,
         "units": series.model.units.names(),
         "steps": [_record(step) for step in steps],
-        "missing": len(series.course.stops) - len(steps),
+        "missing": len(series.course.targets) - len(steps),
         "regimes": [asdict(one) for one in regimes(steps)],
         "changes": [asdict(one) for one in changes],
         "hysteresis": [asdict(one) for one in hysteresis(steps)],
@@ -59,7 +59,7 @@ def step_text(series: Series, answer: Answer) -> str:
     """Return the regimes, what depends on the way, the thresholds and the files, one a line."""
     course, parameter, units = series.course, answer["parameter"], series.model.units
     back = " and back" if course.back else ""
-    made = f"{len(answer['steps'])} of {len(course.stops)} steps, {answer['status']}"
+    made = f"{len(answer['steps'])} of {len(course.targets)} steps, {answer['status']}"
     way = f"{parameter} from {course.values[0]:.6g} to {course.values[-1]:.6g}{back}"
     further = units.forces if answer["thresholds"] else ()
     head = [f"{answer['load']}: {way}, {made}", *units_lines(units.names(), further)]

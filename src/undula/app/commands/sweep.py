@@ -12,7 +12,7 @@ from undula.errors import InputError
 from undula.interrupts import interruptible
 from undula.sweeps.own_workers import workers_that_fit
 from undula.sweeps.point import line, point, points, software
-from undula.sweeps.store import StudyStore, load_study, open_study
+from undula.sweeps.store import StudyStore, load_sweep, open_study
 from undula.sweeps.sweep import Study, read_study
 from undula.sweeps.work_queue import SAVE_EVERY, SweepWork
 from undula.sweeps.workers import DiedError, LostError, Pool, pool
@@ -97,7 +97,7 @@ def sweep(
     with store.alone():
         work = SweepWork(store, retry_failed=asked.retry_failed)
         status = _carry_on(work, store.study, asked, began) if work.left else "done"
-    answer = study_answer(load_study(store.path, shapes=False))
+    answer = study_answer(load_sweep(store.path, shapes=False))
     answer |= {"status": status, "seconds": time.monotonic() - began, "store": str(store.path)}
     _tell_of_trouble(answer, store)
     reply(answer, study_text(answer), as_json=as_json)
@@ -112,7 +112,7 @@ def status(path: Path, *, as_json: bool) -> int:
     InputError
         There is no such store.
     """
-    answer = study_answer(load_study(path, shapes=False)) | {"store": str(path)}
+    answer = study_answer(load_sweep(path, shapes=False)) | {"store": str(path)}
     reply(answer, study_text(answer), as_json=as_json)
     return DONE
 

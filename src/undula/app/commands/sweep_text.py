@@ -20,7 +20,7 @@ def study_answer(stored: xr.Dataset) -> dict[str, Any]:
     Parameters
     ----------
     stored
-        As `undula.sweeps.store.load_study` opens it.
+        As `undula.sweeps.store.load_sweep` opens it.
     """
     study = of_dump(json.loads(stored.attrs["study"]))
     status = stored["status"].values.ravel()

@@ -9,7 +9,7 @@ from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, CURE, digits, on_links, with_error
-from undula.terminal.output import Told
+from undula.terminal.output import Answer
 from undula.terminal.progress import counted, searching
 from undula.terminal.units_text import force_in, units_lines
 
@@ -19,7 +19,7 @@ _FARTHER = "--up-to looks farther"
 
 def tell_threshold(
     model: Model, name: str, *, converge: bool, up_to: float | None, title: str
-) -> Told:
+) -> Answer:
     """Find one threshold."""
     with searching(name) as tell:
         found = threshold(model, name, converged=converge, up_to=up_to, progress=tell)
@@ -31,7 +31,7 @@ def tell_threshold(
         *_cure([answer]),
         *units_lines(units.names(), units.forces),
     ]
-    return Told(answer, "\n".join(lines))
+    return Answer(answer, "\n".join(lines))
 
 
 def tell_thresholds(
@@ -42,7 +42,7 @@ def tell_thresholds(
     converge: bool,
     up_to: float | None,
     title: str,
-) -> tuple[Told, tuple[Threshold, ...]]:
+) -> tuple[Answer, tuple[Threshold, ...]]:
     """Find a threshold at each value of a second parameter."""
     parameter, values = along
     with interruptible() as interrupted, counted(f"{name} along {parameter}") as tell:
@@ -75,7 +75,7 @@ def tell_thresholds(
         *(f"  {value:>12.6g}  {_line(one, of)}" for value, one, of in each),
         *_cure(told),
     ]
-    return Told(answer, "\n".join(lines)), found
+    return Answer(answer, "\n".join(lines)), found
 
 
 def threshold_answer(found: Threshold, units: Units) -> dict[str, Any]:

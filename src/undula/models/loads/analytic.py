@@ -83,8 +83,8 @@ class DensityLoad(Load):
         """Return what each link carries, parted so that the first moment is exact."""
         s = np.linspace(0.0, 1.0, links + 1)
         force = np.diff(self.force_below(s))
-        head = (np.diff(self.moment_below(s)) - s[:-1] * force) * links
-        return head, force - head
+        outer_force = (np.diff(self.moment_below(s)) - s[:-1] * force) * links
+        return outer_force, force - outer_force
 
 
 @dataclass(frozen=True)
@@ -113,17 +113,17 @@ class PointLoad(DensityLoad):
 
     def shares(self, links: int) -> tuple[Links, Links]:
         """Share the force between the links whose midpoints enclose it."""
-        head, foot = np.zeros(links), np.zeros(links)
+        outer_force, inner_force = np.zeros(links), np.zeros(links)
         place = self.position * links - 0.5  # in links, from the first midpoint
         if 0.0 < place < links - 1.0:
             lower = int(place)
             for link, part in ((lower, 1.0 - (place - lower)), (lower + 1, place - lower)):
-                head[link] = foot[link] = 0.5 * part * self.force
+                outer_force[link] = inner_force[link] = 0.5 * part * self.force
         else:
             link = 0 if place <= 0.0 else links - 1
-            head[link] = (self.position * links - link) * self.force
-            foot[link] = self.force - head[link]
-        return head, foot
+            outer_force[link] = (self.position * links - link) * self.force
+            inner_force[link] = self.force - outer_force[link]
+        return outer_force, inner_force
 
 
 @dataclass(frozen=True)

@@ -52,6 +52,6 @@ class BeadLoad(Load):
                 f"BeadLoad: beads = {self.beads!r} asks for bead {max(loaded)} of a chain of"
                 f" {links} links; give numbers from 1 to {links}"
             )
-        head = np.zeros(links)
-        head[np.array(loaded) - 1] = self.force / len(loaded)
-        return head, np.zeros(links)
+        outer_force = np.zeros(links)
+        outer_force[np.array(loaded) - 1] = self.force / len(loaded)
+        return outer_force, np.zeros(links)

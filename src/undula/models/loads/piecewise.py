@@ -39,7 +39,7 @@ _LOOKS = np.arange(1, 1001) * (0.5 * np.sqrt(5.0) - 0.5) % 1.0
 Density = Callable[[Points], Any]
 
 
-class Spread(NamedTuple):
+class PiecewiseDensity(NamedTuple):
     """How a force of 1 is spread: Chebyshev series (degree + 1, m) on pieces between `edges`.
 
     `force` is the force below s, `area` the integral of that.
@@ -65,7 +65,7 @@ class Spread(NamedTuple):
         return np.asarray(chebyshev.chebval(x, series[:, piece], tensor=False))
 
 
-def spread_of(load: str, edges: Array, series: Array, largest: float) -> Spread:
+def spread_of(load: str, edges: Array, series: Array, largest: float) -> PiecewiseDensity:
     """Return how a density spreads a force.
 
     Parameters
@@ -93,7 +93,7 @@ def spread_of(load: str, edges: Array, series: Array, largest: float) -> Spread:
             " have a positive total"
         )
     force /= total
-    return Spread(edges, force, _integral(force, half))
+    return PiecewiseDensity(edges, force, _integral(force, half))
 
 
 def followed(density: Density, kinks: tuple[float, ...]) -> tuple[Array, Array, float]:

@@ -19,7 +19,7 @@ import numpy as np
 from undula.arrays import Array, Points
 from undula.errors import InputError, is_number
 from undula.models.loads.analytic import DensityLoad
-from undula.models.loads.piecewise import Density, Spread, followed, largest_of, spread_of
+from undula.models.loads.piecewise import Density, PiecewiseDensity, followed, largest_of, spread_of
 
 #: How far from 0 and 1 the ends of a table may be, by the round-off of whoever made it.
 _END_ROUND_OFF = 1e-12
@@ -32,7 +32,7 @@ class _GivenLoad(DensityLoad):
 
     @property
     @abstractmethod
-    def _spread(self) -> Spread:
+    def _spread(self) -> PiecewiseDensity:
         """How a force of 1 would be spread."""
 
     def force_below(self, s: Points) -> Points:
@@ -87,7 +87,7 @@ class TableLoad(_GivenLoad):
         return tuple(s[1:-1][np.abs(density[1:-1] - straight) > _KINK_ROUND_OFF].tolist())
 
     @cached_property
-    def _spread(self) -> Spread:
+    def _spread(self) -> PiecewiseDensity:
         at = self._relative_density
         lines = np.array([0.5 * (at[:-1] + at[1:]), 0.5 * (at[1:] - at[:-1])])
         return spread_of("TableLoad", np.array(self.s), lines, largest_of(self.density))
@@ -104,7 +104,7 @@ class _Resolved:
 
     function: Density
     kinks: tuple[float, ...]
-    spread: Spread = field(compare=False)
+    spread: PiecewiseDensity = field(compare=False)
 
     def __call__(self, s: Points) -> Any:
         return self.function(s)
@@ -163,7 +163,7 @@ class ProfileLoad(_GivenLoad):
         return tuple(self._spread.edges[1:-1].tolist())
 
     @property
-    def _spread(self) -> Spread:
+    def _spread(self) -> PiecewiseDensity:
         assert isinstance(self.density, _Resolved)
         return self.density.spread
 

@@ -12,25 +12,30 @@ import numpy as np
 
 from undula.arrays import Array
 from undula.errors import InputError
-from undula.jit.borrowed import lent
+from undula.jit.borrowed import borrowed
 from undula.jit.compilation import entry
 from undula.models.rod.newton_matrix import exact_derivative
 from undula.models.rod.sizes import belongs
-from undula.models.rod.tables import FramedRod, Rod
-from undula.numerics.integration.system import derivative_half_bandwidth, generator, residual, weigh
+from undula.models.rod.tables import DirectedRod, Rod
+from undula.numerics.integration.system import (
+    apply_drag,
+    derivative_half_bandwidth,
+    generator,
+    residual,
+)
 
 
-@entry("y (n), w (n), out (n)", where=lambda system, n: belongs(lent(system), n))
+@entry("y (n), w (n), out (n)", where=lambda system, n: belongs(borrowed(system), n))
 def balance(system: Any, y: Any, w: Any, out: Any) -> None:
     """Write the residual R(x) w - f and the constraints to out (n,)."""
-    residual(lent(system), lent(y), lent(w), 1.0, lent(out))
+    residual(borrowed(system), borrowed(y), borrowed(w), 1.0, borrowed(out))
 
 
-@entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(lent(system), n))
+@entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(borrowed(system), n))
 def turning(system: Any, y: Any, out: Any, dragged: Any) -> None:
     """Write S x and R(x) S x, for the velocity of a unit rate of turning, to out and dragged."""
     generator(system, y, out)
-    weigh(system, y, out, dragged)
+    apply_drag(system, y, out, dragged)
 
 
 @dataclass(frozen=True)
@@ -85,7 +90,7 @@ class RodFlow:
         signs = np.ones(self.stride)
         signs[0] = -1.0
         signs[self.system.dimension + 1 :] = -1.0
-        if isinstance(self.system, FramedRod):
+        if isinstance(self.system, DirectedRod):
             if self.system.natural[:, 1].any() or self.system.tip[0] != 0.0:
                 raise InputError(
                     "a rod that is curved about its second director is no mirror image of itself;"

@@ -29,7 +29,7 @@ def drag_block_kernel(rod: Any) -> Callable[..., Any]:
 
     @kernel
     def drag_block(system: Any, t: Any, w: Any, i: Any, mean: Any, block: Any) -> None:
-        factor = -system.weight[i] * system.lag * mean_tangent(t, i, mean)
+        factor = -system.weight[i] * system.anisotropy * mean_tangent(t, i, mean)
         along = 0.0
         for a in range(d):
             along += mean[a] * w[m * i + a]
@@ -154,12 +154,19 @@ def derivative_kernel(rod: Any, link_blocks: Callable[..., Any]) -> Callable[...
                         for e in range(d):
                             product[a, b] += drag[a, e] * dt[e, b]
                 add(band, i, k, n, 1.0, product)
-                add(band, i, k, n, c * (system.head[i] if k == i else system.foot[k]), dt)
+                add(
+                    band,
+                    i,
+                    k,
+                    n,
+                    c * (system.outer_force[i] if k == i else system.inner_force[k]),
+                    dt,
+                )
             for a in range(d):
                 row = m * i + a
                 for b in range(d):
                     weight = system.weight[i] * (
-                        (1.0 if a == b else 0.0) - system.lag * mean[a] * mean[b]
+                        (1.0 if a == b else 0.0) - system.anisotropy * mean[a] * mean[b]
                     )
                     band[row, half + b - a] += weight
                     if d == 3 and b < 2:

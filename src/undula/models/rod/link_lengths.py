@@ -31,7 +31,7 @@ def straight(system: Any) -> State:
         The load is as large as the stiffness of extensible links.
     """
     count: int = system.joint.size
-    carried = np.cumsum((system.head + np.append(system.foot[1:], 0.0))[::-1])[::-1]
+    carried = np.cumsum((system.outer_force + np.append(system.inner_force[1:], 0.0))[::-1])[::-1]
     if not carried.max() < system.tensile:
         raise InputError(
             f"tensile_stiffness = {system.tensile:g} does not exceed the force of"

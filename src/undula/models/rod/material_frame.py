@@ -41,11 +41,11 @@ import numpy as np
 from undula.jit.compilation import kernel, overwrite
 from undula.models.rod.joint import stiffening, stiffening_slope
 from undula.models.rod.residual import along_kernel, rates_kernel, tangents_kernel
-from undula.models.rod.tables import FramedRod
+from undula.models.rod.tables import DirectedRod
 from undula.numerics.integration.system import constraint_error, implements, rates, residual
 
-_tangents, _along = tangents_kernel(FramedRod), along_kernel(FramedRod)
-_along_links = rates_kernel(FramedRod)
+_tangents, _along = tangents_kernel(DirectedRod), along_kernel(DirectedRod)
+_along_links = rates_kernel(DirectedRod)
 
 # A joint is ten numbers: t, t', a director (the one below or the one above), and a twist moment.
 JOINT = 10
@@ -148,7 +148,7 @@ def last_direction(system: Any, y: Any, t: Any, out: Any) -> None:
         out[k] += system.tip[2] * t[n - 1, k]
 
 
-@implements(rates, FramedRod)
+@implements(rates, DirectedRod)
 def framed_rates(system: Any, y: Any, v: Any, out: Any) -> None:
     """Write the rate of turning, the active power and the dissipation at velocity v to out (3,)."""
     n = system.joint.shape[0]
@@ -158,11 +158,11 @@ def framed_rates(system: Any, y: Any, v: Any, out: Any) -> None:
     last_direction(system, y, t, last)
     for k in range(3):
         aside = last[k] - t[n - 1, k]
-        out[1] -= system.head[n - 1] * aside * v[8 * n - 8 + k]
-        out[1] -= system.foot[n - 1] * aside * v[8 * n - 16 + k]
+        out[1] -= system.outer_force[n - 1] * aside * v[8 * n - 8 + k]
+        out[1] -= system.inner_force[n - 1] * aside * v[8 * n - 16 + k]
 
 
-@implements(residual, FramedRod)
+@implements(residual, DirectedRod)
 def framed_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
     """Write R(x) w - c f(x, z) and the constraints to out (n,)."""
     n = system.joint.shape[0]
@@ -190,20 +190,20 @@ def framed_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
     out[8 * n - 1] = -y[8 * n - 1]
     last_direction(system, y, t, found)
     for i in range(n):
-        lagging, square = system.lag * _along(t, w, i), 0.0
+        lagging, square = system.anisotropy * _along(t, w, i), 0.0
         for k in range(3):
             force = -slopes[i, k] / system.link - y[8 * i + 3] * t[i, k]
             push = t[i, k] if i + 1 < n else found[k]
             if i > 0:
-                out[8 * (i - 1) + k] += c * (force + system.foot[i] * push)
+                out[8 * (i - 1) + k] += c * (force + system.inner_force[i] * push)
             direction = t[i, k] + (t[i + 1, k] if i + 1 < n else 0.0)
             drag = system.weight[i] * (w[8 * i + k] - lagging * direction)
-            out[8 * i + k] = drag - c * (force - system.head[i] * push)
+            out[8 * i + k] = drag - c * (force - system.outer_force[i] * push)
             square += t[i, k] * t[i, k]
         out[8 * i + 3] = 0.5 * (square - 1.0)
 
 
-@implements(constraint_error, FramedRod)
+@implements(constraint_error, DirectedRod)
 def framed_constraint_error(system: Any, y: Any) -> Any:
     """Return the largest violation of the lengths and of the transport of directors at y (n,)."""
     n, largest = system.joint.shape[0], 0.0

@@ -25,11 +25,11 @@ from undula.models.rod.material_frame import (
     twist_of,
 )
 from undula.models.rod.residual import tangents_kernel
-from undula.models.rod.tables import FramedRod
+from undula.models.rod.tables import DirectedRod
 
-_HALF = FramedRod.half_bandwidth
+_HALF = DirectedRod.half_bandwidth
 _STEP = 1e-30
-_tangents = tangents_kernel(FramedRod)
+_tangents = tangents_kernel(DirectedRod)
 
 
 @kernel
@@ -41,7 +41,7 @@ def _link_blocks(system: Any, y: Any, t: Any, length: Any, blocks: Any) -> None:
             blocks[i, 1, a, a] = -y[8 * i + 3] / system.link
 
 
-_without_joints = derivative_kernel(FramedRod, _link_blocks)
+_without_joints = derivative_kernel(DirectedRod, _link_blocks)
 
 
 @kernel
@@ -121,7 +121,7 @@ def add_last_load(system: Any, y: Any, t: Any, c: Any, band: Any) -> None:
     n, h = t.shape[0], system.link
     on_a, on_b, on_t = system.tip[0], system.tip[1], system.tip[2] - 1.0
     for node in range(n - 2, n):
-        load = c * (system.head[n - 1] if node == n - 1 else system.foot[n - 1])
+        load = c * (system.outer_force[n - 1] if node == n - 1 else system.inner_force[n - 1])
         at = 8 * (n - 1 - node) + _HALF
         for k in range(3):
             p, q, row = (k + 1) % 3, (k + 2) % 3, 8 * node + k

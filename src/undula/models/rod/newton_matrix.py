@@ -8,20 +8,20 @@ gently. Links that fold need the exact derivative, and so do extensible ones, wh
 stretching stiffnesses are of one size.
 
 Coefficients of links, J[k] = d (row i) / de_k for k = i-1 .. i+2, come first; a node p then gets
-J[p] - J[p+1]. The band begins with the node at the tip (`gentle_structure`).
+J[p] - J[p+1]. The band begins with the node at the tip (`small_angle_structure`).
 """
 
 import math
 from collections.abc import Callable
 from typing import Any
 
-from undula.jit.borrowed import lent
+from undula.jit.borrowed import borrowed
 from undula.jit.compilation import entry, kernel
 from undula.models.rod.jacobian import derivative_kernel, link_blocks_kernel
 from undula.models.rod.joint import stiffening
 from undula.models.rod.material_frame_jacobian import framed_derivative
 from undula.models.rod.sizes import belongs
-from undula.models.rod.tables import GENTLE_RODS, RODS, FramedRod, SpatialRod, WindingRod
+from undula.models.rod.tables import GENTLE_RODS, RODS, DirectedRod, SpatialRod, UnwrappedRod
 from undula.models.rod.unwrapped_jacobian import winding_derivative
 from undula.models.rod.vectors import vectors
 from undula.numerics.integration.system import (
@@ -35,7 +35,7 @@ from undula.numerics.integration.system import (
 from undula.numerics.linalg.banded import blank_kernel
 
 
-def gentle_kernel(rod: Any, *, planar: bool) -> Callable[..., Any]:
+def small_angle_kernel(rod: Any, *, planar: bool) -> Callable[..., Any]:
     """Return `write(system, y, w, cosine, sine, c, turn, band)`, the matrix for a kind of rod.
 
     A planar one is for links in space that lie in the plane whose azimuth has this cosine and sine.
@@ -92,16 +92,16 @@ def gentle_kernel(rod: Any, *, planar: bool) -> Callable[..., Any]:
             # d(R_i w_i) / de = s across + alike I for links i and i + 1
             moved, per_square = read(w, k, cosine, sine), 1.0 / dot(s, s)
             weight, along = system.weight[i], dot(s, moved)
-            lagging = weight * system.lag * per_square
+            lagging = weight * system.anisotropy * per_square
             change = -lagging * per_link
             across = times(change, minus(moved, times(2.0 * along * per_square, s)))
             alike = change * along
             # -c df_i / de_k: multiples of the identity for k = i-1, i, i+1, i+2
             tension, next_tension = y[k + tie], 0.0 if last else y[k + m + tie]
-            foot = 0.0 if last else system.foot[i + 1]
+            inner_force = 0.0 if last else system.inner_force[i + 1]
             before, beyond = -c * bend, c * last_bend
-            here = c * (bend + 2.0 * next_bend + per_link * (tension + system.head[i]))
-            after = -c * (2.0 * next_bend + last_bend + per_link * (next_tension - foot))
+            here = c * (bend + 2.0 * next_bend + per_link * (tension + system.outer_force[i]))
+            after = -c * (2.0 * next_bend + last_bend + per_link * (next_tension - inner_force))
             inner, own, outer = before - here - alike, here - after, after - beyond + alike
             # Of what belongs to nodes beyond the ends nothing is left.
             from_inner = from_outer = across
@@ -148,8 +148,8 @@ def gentle_kernel(rod: Any, *, planar: bool) -> Callable[..., Any]:
     return write
 
 
-def _register_gentle(rod: Any) -> None:
-    write = gentle_kernel(rod, planar=False)
+def _register_small_angle(rod: Any) -> None:
+    write = small_angle_kernel(rod, planar=False)
 
     @implements(matrix, rod)
     def rod_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
@@ -157,7 +157,7 @@ def _register_gentle(rod: Any) -> None:
 
 
 def _register_planar(rod: Any) -> None:
-    m, write = rod.stride, gentle_kernel(rod, planar=True)
+    m, write = rod.stride, small_angle_kernel(rod, planar=True)
 
     @implements(planar_matrix, rod)
     def rod_planar_matrix(system: Any, y: Any, w: Any, azimuth: Any, c: Any, band: Any) -> None:
@@ -184,12 +184,12 @@ def _register_planar(rod: Any) -> None:
         return azimuth, math.sqrt(system.joint.shape[0] * max(off, moving_off))
 
 
-_OTHERS: dict[Any, Any] = {WindingRod: winding_derivative, FramedRod: framed_derivative}
+_OTHERS: dict[Any, Any] = {UnwrappedRod: winding_derivative, DirectedRod: framed_derivative}
 for _rod in RODS:
     _derivative: Any = _OTHERS.get(_rod) or derivative_kernel(_rod, link_blocks_kernel(_rod))
     implements(derivative, _rod)(_derivative)
     if _rod in GENTLE_RODS:
-        _register_gentle(_rod)
+        _register_small_angle(_rod)
     else:
         implements(matrix, _rod)(_derivative)
 _register_planar(SpatialRod)
@@ -197,8 +197,8 @@ _register_planar(SpatialRod)
 
 @entry(
     "y (n), w (n), band (n, d)",
-    where=lambda system, n, d: belongs(lent(system), n) and d == derivative_width(system),
+    where=lambda system, n, d: belongs(borrowed(system), n) and d == derivative_width(system),
 )
 def exact_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
     """Write the exact derivative of the residual to band (n, 2 b + 1), see `matrix`."""
-    derivative(lent(system), lent(y), lent(w), c, turn, lent(band))
+    derivative(borrowed(system), borrowed(y), borrowed(w), c, turn, borrowed(band))

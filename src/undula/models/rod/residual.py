@@ -9,9 +9,10 @@ import numpy as np
 
 from undula.jit.compilation import kernel
 from undula.models.rod.joint import stiffening
-from undula.models.rod.tables import OTHER_JOINTS, RODS, FramedRod
+from undula.models.rod.tables import OTHER_JOINTS, RODS, DirectedRod
 from undula.models.rod.vectors import vectors
 from undula.numerics.integration.system import (
+    apply_drag,
     constraint_error,
     generator,
     implements,
@@ -19,7 +20,6 @@ from undula.numerics.integration.system import (
     residual,
     rotate,
     size,
-    weigh,
 )
 
 
@@ -173,9 +173,9 @@ def rates_kernel(rod: Any) -> Any:
                 spin += y[k] * v[k + 1] - y[k + 1] * v[k]
                 inertia += y[k] * y[k] + y[k + 1] * y[k + 1]
             along = dot(s, moved)
-            slower = system.lag * along * along / dot(s, s)
+            slower = system.anisotropy * along * along / dot(s, s)
             dissipation += system.weight[i] * (dot(moved, moved) - slower)
-            power -= system.head[i] * dot(t, moved) + system.foot[i] * dot(t, before)
+            power -= system.outer_force[i] * dot(t, moved) + system.inner_force[i] * dot(t, before)
             node, t, before = outer, u, moved
         out[0] = spin / inertia if inertia > 0.0 else 0.0
         out[1] = power
@@ -208,11 +208,11 @@ def _register_forces(rod: Any) -> None:
             multiplier = y[k + d]
             force = minus(times(1.0 / length, minus(b, a)), times(multiplier, t))
             if i > 0:
-                write(out, k - m, plus(row, times(c, plus(force, times(system.foot[i], t)))))
+                write(out, k - m, plus(row, times(c, plus(force, times(system.inner_force[i], t)))))
             moved = read(w, k)
-            lagging = times(system.lag * dot(s, moved) / dot(s, s), s)
+            lagging = times(system.anisotropy * dot(s, moved) / dot(s, s), s)
             drag = times(system.weight[i], minus(moved, lagging))
-            row = minus(drag, times(c, minus(force, times(system.head[i], t))))
+            row = minus(drag, times(c, minus(force, times(system.outer_force[i], t))))
             if extensible:
                 tension = multiplier + (shortfall + outer_shortfall) / length
                 out[k + d] = length / system.link - 1.0 - tension / system.tensile
@@ -239,20 +239,20 @@ def _register_motion(rod: Any) -> None:
     d, m = rod.dimension, rod.stride
     tangents, along = tangents_kernel(rod), along_kernel(rod)
 
-    @implements(weigh, rod)
+    @implements(apply_drag, rod)
     def rod_weigh(system: Any, y: Any, u: Any, out: Any) -> None:
         n = system.joint.shape[0]
         t, length = np.empty((n, d)), np.empty(n)
         tangents(system, y, t, length)
         for i in range(n):
-            lagging = system.lag * along(t, u, i)
+            lagging = system.anisotropy * along(t, u, i)
             for a in range(d):
                 direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
                 out[m * i + a] = system.weight[i] * (u[m * i + a] - lagging * direction)
             for k in range(m * i + d, m * i + m):
                 out[k] = 0.0
 
-    if rod is not FramedRod:
+    if rod is not DirectedRod:
         implements(rates, rod)(rates_kernel(rod))
 
     @implements(size, rod)
@@ -265,7 +265,7 @@ def _register_motion(rod: Any) -> None:
             total += mask[k] * change * change
         return math.sqrt(total * system.joint.shape[0])
 
-    if d == 3 and rod is not FramedRod:
+    if d == 3 and rod is not DirectedRod:
 
         @implements(generator, rod)
         def rod_generator(system: Any, y: Any, out: Any) -> None:

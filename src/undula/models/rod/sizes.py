@@ -3,7 +3,7 @@
 from typing import Any
 
 from undula.jit.compilation import kernel
-from undula.models.rod.tables import RODS, FramedRod
+from undula.models.rod.tables import RODS, DirectedRod
 from undula.numerics.integration.system import belongs, implements
 
 __all__ = ["belongs"]
@@ -15,7 +15,12 @@ def _register(rod: Any) -> None:
     @kernel
     def tables_belong(system: Any, n: Any) -> Any:
         links = system.joint.shape[0]
-        alike = system.weight.shape[0] == system.head.shape[0] == system.foot.shape[0] == links
+        alike = (
+            system.weight.shape[0]
+            == system.outer_force.shape[0]
+            == system.inner_force.shape[0]
+            == links
+        )
         return 0 < m * links == n and alike
 
     @kernel
@@ -23,7 +28,7 @@ def _register(rod: Any) -> None:
         own = 8 * system.natural.shape[0] == n and system.natural.shape[1] == 2
         return tables_belong(system, n) and own and system.tip.shape[0] == 3
 
-    implements(belongs, rod)(directors_belong if rod is FramedRod else tables_belong)
+    implements(belongs, rod)(directors_belong if rod is DirectedRod else tables_belong)
 
 
 for _rod in RODS:

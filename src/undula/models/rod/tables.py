@@ -32,14 +32,14 @@ class Tables(NamedTuple):
 
     joint: Links  # K: stiffness of the joint at the foot of each link
     weight: Links  # w: drag weight of each node
-    head: Links  # force that each link puts on its outer node, along -t
-    foot: Links  # force that each link puts on its inner node, along -t
+    outer_force: Links  # force that each link puts on its outer node, along -t
+    inner_force: Links  # force that each link puts on its inner node, along -t
     link: float  # h: length of a link
-    lag: float  # beta = 1 - 1/gamma
+    anisotropy: float  # beta = 1 - 1/gamma
     tensile: float  # EA; infinite for rigid links
 
 
-def gentle_structure(dimension: int) -> Structure:
+def small_angle_structure(dimension: int) -> Structure:
     """Return where the matrix of `undula.models.rod.newton_matrix` for rigid links has entries.
 
     From the tip on, a link after its outer node, is the order that fills in least.
@@ -58,7 +58,7 @@ def planar_structure() -> Structure:
 
     To first order what happens in the plane and what happens across it know nothing of each other.
     """
-    whole, across = gentle_structure(3), 1
+    whole, across = small_angle_structure(3), 1
     apart = frozenset(
         (row, shift, column)
         for row, shift, column in whole.entries
@@ -74,7 +74,7 @@ class SpatialRod(Tables):
     stride: ClassVar = 4
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 8
-    structure: ClassVar = gentle_structure(3)
+    structure: ClassVar = small_angle_structure(3)
     planar_structure: ClassVar = planar_structure()
     derivative_half_bandwidth: ClassVar = 11
 
@@ -86,7 +86,7 @@ class PlanarRod(Tables):
     stride: ClassVar = 3
     extensible: ClassVar = False
     half_bandwidth: ClassVar = 6
-    structure: ClassVar = gentle_structure(2)
+    structure: ClassVar = small_angle_structure(2)
     derivative_half_bandwidth: ClassVar = 8
 
 
@@ -108,7 +108,7 @@ class FoldingPlanarRod(Tables):
     half_bandwidth: ClassVar = 8
 
 
-class WindingRod(Tables):
+class UnwrappedRod(Tables):
     """Rigid links in a plane whose joints wind up beyond pi instead of folding."""
 
     dimension: ClassVar = 2
@@ -140,10 +140,10 @@ class FramedTables(NamedTuple):
 
     joint: Links
     weight: Links
-    head: Links
-    foot: Links
+    outer_force: Links
+    inner_force: Links
     link: float
-    lag: float
+    anisotropy: float
     tensile: float
     natural: Array  # (N, 2) angle about each director by which a joint at rest is bent
     ratio: float  # stiffness of joints about the second director over that about the first
@@ -152,7 +152,7 @@ class FramedTables(NamedTuple):
     tip: Array  # (3,) components on a, b, t of the direction that opposes the last link's load
 
 
-class FramedRod(FramedTables):
+class DirectedRod(FramedTables):
     """Rigid links in space, each with directors (see `undula.models.rod.material_frame`)."""
 
     dimension: ClassVar = 3
@@ -168,11 +168,11 @@ RODS = (
     FoldingPlanarRod,
     ExtensibleSpatialRod,
     ExtensiblePlanarRod,
-    WindingRod,
-    FramedRod,
+    UnwrappedRod,
+    DirectedRod,
 )
 #: Rods whose joints have forces and energies of their own.
-OTHER_JOINTS = (WindingRod, FramedRod)
+OTHER_JOINTS = (UnwrappedRod, DirectedRod)
 PlainRod = (
     SpatialRod
     | PlanarRod
@@ -180,6 +180,6 @@ PlainRod = (
     | FoldingPlanarRod
     | ExtensibleSpatialRod
     | ExtensiblePlanarRod
-    | WindingRod
+    | UnwrappedRod
 )
-Rod = PlainRod | FramedRod
+Rod = PlainRod | DirectedRod

@@ -28,10 +28,10 @@ from undula.models.rod.material_frame import (
     twist_of,
 )
 from undula.models.rod.residual import tangents_kernel
-from undula.models.rod.tables import FramedRod
+from undula.models.rod.tables import DirectedRod
 from undula.models.rod.tridiagonal import solve_tridiagonal
 
-_tangents = tangents_kernel(FramedRod)
+_tangents = tangents_kernel(DirectedRod)
 
 #: Corrections after which the search for the twist is given up.
 _MOST_CORRECTIONS = 60

@@ -25,10 +25,10 @@ import numpy as np
 
 from undula.jit.compilation import kernel
 from undula.models.rod.residual import along_kernel, tangents_kernel
-from undula.models.rod.tables import WindingRod
+from undula.models.rod.tables import UnwrappedRod
 from undula.numerics.integration.system import constraint_error, implements, residual
 
-_tangents, _along = tangents_kernel(WindingRod), along_kernel(WindingRod)
+_tangents, _along = tangents_kernel(UnwrappedRod), along_kernel(UnwrappedRod)
 
 
 @kernel
@@ -71,29 +71,29 @@ def winding_energy(system: Any, y: Any) -> Any:
     return bending, 0.0
 
 
-@implements(residual, WindingRod)
+@implements(residual, UnwrappedRod)
 def winding_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
     """Write R(x) w - c f(x, z) and the constraints to out (n,)."""
     n = system.joint.shape[0]
     t, length = np.empty((n, 2)), np.empty(n)
     _tangents(system, y, t, length)
     for i in range(n):
-        couple, lagging = moment_step(system, y, i), system.lag * _along(t, w, i)
+        couple, lagging = moment_step(system, y, i), system.anisotropy * _along(t, w, i)
         square = 0.0
         for a in range(2):
             normal = t[i, 1] if a == 0 else -t[i, 0]
             force = couple * normal - y[4 * i + 2] * t[i, a]
             if i > 0:
-                out[4 * (i - 1) + a] += c * (force + system.foot[i] * t[i, a])
+                out[4 * (i - 1) + a] += c * (force + system.inner_force[i] * t[i, a])
             direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
             drag = system.weight[i] * (w[4 * i + a] - lagging * direction)
-            out[4 * i + a] = drag - c * (force - system.head[i] * t[i, a])
+            out[4 * i + a] = drag - c * (force - system.outer_force[i] * t[i, a])
             square += t[i, a] * t[i, a]
         out[4 * i + 2] = 0.5 * (square - 1.0)
         out[4 * i + 3] = angle_excess(y, t, i)
 
 
-@implements(constraint_error, WindingRod)
+@implements(constraint_error, UnwrappedRod)
 def winding_constraint_error(system: Any, y: Any) -> Any:
     """Return the largest violation of the constraints at y (n,)."""
     n, largest = system.joint.shape[0], 0.0

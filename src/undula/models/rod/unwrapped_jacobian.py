@@ -15,11 +15,11 @@ import numpy as np
 from undula.jit.compilation import kernel
 from undula.models.rod.jacobian import derivative_kernel
 from undula.models.rod.residual import tangents_kernel
-from undula.models.rod.tables import WindingRod
+from undula.models.rod.tables import UnwrappedRod
 from undula.models.rod.unwrapped import moment_step
 
-_HALF = 3 * WindingRod.stride - 1
-_tangents = tangents_kernel(WindingRod)
+_HALF = 3 * UnwrappedRod.stride - 1
+_tangents = tangents_kernel(UnwrappedRod)
 
 
 @kernel
@@ -32,7 +32,7 @@ def _link_blocks(system: Any, y: Any, t: Any, length: Any, blocks: Any) -> None:
         blocks[i, 1, 0, 1], blocks[i, 1, 1, 0] = couple, -couple
 
 
-_at_fixed_angles = derivative_kernel(WindingRod, _link_blocks)
+_at_fixed_angles = derivative_kernel(UnwrappedRod, _link_blocks)
 
 
 @kernel

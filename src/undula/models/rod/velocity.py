@@ -15,7 +15,7 @@ from undula.jit.compilation import entry, kernel, overwrite
 from undula.models.rod.joint import joint_energy, stiffening
 from undula.models.rod.residual import cosine_kernel, mean_tangent_kernel, tangents_kernel
 from undula.models.rod.sizes import belongs
-from undula.models.rod.tables import OTHER_JOINTS, RODS, FramedRod, WindingRod
+from undula.models.rod.tables import OTHER_JOINTS, RODS, DirectedRod, UnwrappedRod
 from undula.models.rod.tridiagonal import solve_tridiagonal
 from undula.models.rod.twist import find_frames, framed_energy
 from undula.models.rod.unwrapped import follow_angles, winding_energy
@@ -53,7 +53,7 @@ def _register(rod: Any) -> None:
             along = 0.0
             for a in range(d):
                 along += mean[a] * force[m * i + a]
-            along *= system.lag / (1.0 - system.lag)  # gamma - 1
+            along *= system.anisotropy / (1.0 - system.anisotropy)  # gamma - 1
             for a in range(d):
                 v[m * i + a] = (force[m * i + a] + along * mean[a]) / system.weight[i]
             for k in range(m * i + d, m * i + m):
@@ -67,7 +67,7 @@ def _register(rod: Any) -> None:
             straight += t[p, a] * t[q, a]
             first += t[p, a] * mean[a]
             second += t[q, a] * mean[a]
-        anisotropy = system.lag / (1.0 - system.lag)
+        anisotropy = system.anisotropy / (1.0 - system.anisotropy)
         return (straight + anisotropy * first * second) / system.weight[i]
 
     @kernel
@@ -117,9 +117,9 @@ def _register(rod: Any) -> None:
 
     rod_velocity_compiled = kernel(rod_velocity)
     compiled = extensible_multipliers if extensible else rigid_multipliers
-    if rod is WindingRod:
+    if rod is UnwrappedRod:
         compiled = winding_multipliers
-    if rod is FramedRod:
+    if rod is DirectedRod:
         compiled = framed_multipliers
 
     @implements(find_multipliers, rod)
@@ -153,8 +153,8 @@ for _rod in RODS:
     _register(_rod)
     if _rod not in OTHER_JOINTS:
         _register_energy(_rod)
-implements(elastic_energy, WindingRod)(winding_energy)
-implements(elastic_energy, FramedRod)(framed_energy)
+implements(elastic_energy, UnwrappedRod)(winding_energy)
+implements(elastic_energy, DirectedRod)(framed_energy)
 
 
 @entry(f"y (n), v (n + {RATES})", where=lambda system, n: belongs(system, n))

@@ -18,7 +18,7 @@ import numpy as np
 from undula.arrays import Array
 from undula.numerics.integration.status import Status
 from undula.numerics.integration.step import Options
-from undula.numerics.integration.stepper_state import STEPS, TIME, Memory
+from undula.numerics.integration.stepper_state import STEPS, TIME, StepperState
 from undula.numerics.integration.system import derivative_half_bandwidth
 from undula.numerics.integration.variational import advance_with_changes
 
@@ -60,7 +60,7 @@ class Block:
 
 def growth(
     system: Any,
-    memory: Memory,
+    memory: StepperState,
     options: Options,
     *,
     count: int,

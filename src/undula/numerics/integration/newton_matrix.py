@@ -22,6 +22,7 @@ from undula.numerics.integration.stepper_state import (
     SOLVES,
 )
 from undula.numerics.integration.system import (
+    apply_drag,
     factor,
     matrix,
     planar_factor,
@@ -30,7 +31,6 @@ from undula.numerics.integration.system import (
     plane,
     rotate,
     solve,
-    weigh,
 )
 
 
@@ -66,7 +66,7 @@ def is_stale(system: Any, memory: Any, options: Any, work: Any, c: Any) -> Any:
 
 
 @kernel
-def refactor(system: Any, memory: Any, work: Any, c: Any, scale: Any, turn: Any) -> Any:
+def reassemble(system: Any, memory: Any, work: Any, c: Any, scale: Any, turn: Any) -> Any:
     """Make and factor the Newton matrix at the state in `work`; False where it is singular."""
     in_frame, azimuth, off = memory.count[IN_FRAME] == 1, 0.0, math.inf
     if not in_frame:
@@ -92,7 +92,7 @@ def refactor(system: Any, memory: Any, work: Any, c: Any, scale: Any, turn: Any)
         memory.real[FACTORED_C] = 0.0
         return False
     if in_frame:
-        weigh(system, work.y, work.turning, memory.border)
+        apply_drag(system, work.y, work.turning, memory.border)
         solve(system, memory.factors, memory.border)
         memory.count[SOLVES] += 1
     return True

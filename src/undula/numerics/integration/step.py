@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from undula.jit.compilation import kernel
-from undula.numerics.integration.newton_matrix import is_stale, refactor, solve_frozen
+from undula.numerics.integration.newton_matrix import is_stale, reassemble, solve_frozen
 from undula.numerics.integration.schemes import BackwardDifferentiation
 from undula.numerics.integration.stepper_state import CONTRACTION, IN_FRAME, ORDER, STEP
 from undula.numerics.integration.system import (
@@ -127,7 +127,7 @@ def predict(system: Any, memory: Any, options: Any, work: Any) -> Any:
 
 
 @kernel
-def spread(system: Any, work: Any, in_frame: Any, turn: Any) -> None:
+def update_iterate(system: Any, work: Any, in_frame: Any, turn: Any) -> None:
     """Bring y, w and S y up to date with the change found so far and the turn c Omega."""
     n = work.y.shape[0]
     for i in range(n):
@@ -144,19 +144,21 @@ def one_correction(system: Any, memory: Any, options: Any, work: Any, c: Any, tu
     """Apply one Newton correction; return its size, that of the turn included, and the new turn."""
     n = work.y.shape[0]
     in_frame = memory.count[IN_FRAME] == 1
-    delta, slid = work.correction, 0.0
+    delta, rotation_change = work.correction, 0.0
     residual(system, work.y, work.w, c, delta)
     solve_frozen(system, memory, work, delta)
     if in_frame:
-        slip = dot(work.phase, work.y, options.mask) - dot(work.phase, delta, options.mask)
-        turn_change = slip / dot(work.phase, memory.border, options.mask)
+        phase_residual = dot(work.phase, work.y, options.mask) - dot(
+            work.phase, delta, options.mask
+        )
+        turn_change = phase_residual / dot(work.phase, memory.border, options.mask)
         turn += turn_change
-        slid = turn_change * size(system, work.turning, options.mask)
+        rotation_change = turn_change * size(system, work.turning, options.mask)
         for i in range(n):
             delta[i] += turn_change * memory.border[i]
     for i in range(n):
         work.change[i] -= delta[i]
-    return math.hypot(size(system, delta, options.mask), slid), turn
+    return math.hypot(size(system, delta, options.mask), rotation_change), turn
 
 
 @kernel
@@ -172,9 +174,9 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
         for i in range(work.change.shape[0]):
             work.change[i] = 0.0
         turn = work.psi[n] if in_frame else 0.0  # extrapolates the rate
-        spread(system, work, in_frame, turn)
+        update_iterate(system, work, in_frame, turn)
         fresh = attempt == 1 or is_stale(system, memory, options, work, c)
-        if fresh and not refactor(system, memory, work, c, scale, turn):
+        if fresh and not reassemble(system, memory, work, c, scale, turn):
             break
         if iterate(system, memory, options, work, c, scale, turn):
             return True
@@ -200,7 +202,7 @@ def iterate(
             remembered = CONTRACTION_MEMORY * memory.real[CONTRACTION]
             memory.real[CONTRACTION] = max(remembered, found / previous)
         previous = found
-        spread(system, work, in_frame, turn)
+        update_iterate(system, work, in_frame, turn)
         left = found * min(1.0, memory.real[CONTRACTION])
         if left <= NEWTON_FRACTION * scale and constraint_error(system, work.y) <= allowed:
             if m == 0:

@@ -117,7 +117,7 @@ def factor_for(error: Any, order: Any) -> Any:
 
 
 @kernel
-def looks(memory: Any, options: Any) -> Any:
+def frame_check_due(memory: Any, options: Any) -> Any:
     """Tell whether the speeds after the last step are going to be looked at."""
     counts = memory.count
     return options.frame == 1 and (counts[IN_FRAME] == 1 or counts[STEPS] % STEPS_A_LOOK == 0)

@@ -25,7 +25,7 @@ MEMORY_SIZES = (
 )
 
 
-class Memory(NamedTuple):
+class StepperState(NamedTuple):
     """Arrays that a stepper changes in place, for n unknowns and the integrals of their rates.
 
     Attributes
@@ -57,7 +57,7 @@ def start(
     rates: np.ndarray,
     time: float,
     step: float,
-) -> Memory:
+) -> StepperState:
     """Return the memory of a stepper about to take its first step from y (n,) at `time`.
 
     `rates` (n + RATES,) is the rate of change there of the unknowns and of the integrals.
@@ -69,7 +69,7 @@ def start(
     real[[TIME, STEP, PLANNED_FACTOR, CONTRACTION, SMALLEST_STEP]] = time, step, 1.0, 1.0, np.inf
     count[[ORDER, PLANNED_ORDER]] = 1
     width = 2 * type(system).half_bandwidth + 1
-    return Memory(differences, np.zeros((n, width)), np.zeros(n), np.zeros(n), real, count)
+    return StepperState(differences, np.zeros((n, width)), np.zeros(n), np.zeros(n), real, count)
 
 
 @kernel

@@ -108,7 +108,7 @@ def derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any
 
 
 @generic
-def weigh(system: Any, y: Any, u: Any, out: Any) -> Any:
+def apply_drag(system: Any, y: Any, u: Any, out: Any) -> Any:
     """Write R(x) u to the differential rows of out (n,), 0 to the constraint rows."""
     overwrite(out, u)
 

@@ -1,8 +1,8 @@
 """The time loop: steps until every asked time is reached, compiled end to end.
 
-`advance` works on a `Memory` in place and comes back when the asked times are filled, when a number
-of steps is done (so that the caller can show progress or stop), when the list of sections is full,
-or when no step can succeed. Calling it again goes on as if it had never come back.
+`advance` works on a `StepperState` in place and comes back when the asked times are filled, when a
+number of steps is done (so that the caller can show progress or stop), when the list of sections is
+full, or when no step can succeed. Calling it again goes on as if it had never come back.
 """
 
 import math
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from undula.jit.borrowed import lent
+from undula.jit.borrowed import borrowed
 from undula.jit.compilation import entry, kernel
 from undula.numerics.integration.dense_output import energy_maximum, interpolate
 from undula.numerics.integration.status import Status
@@ -27,7 +27,7 @@ from undula.numerics.integration.step_size import (
     change_step,
     choose_frame,
     factor_for,
-    looks,
+    frame_check_due,
     plan,
 )
 from undula.numerics.integration.stepper_state import (
@@ -168,13 +168,13 @@ def advance(
     """
     work = workspace(memory.factored_at.shape[0])
     told = step_on(
-        lent(system),
-        lent(memory),
-        lent(options),
-        lent(work),
-        lent(times),
-        lent(states),
-        lent(sections),
+        borrowed(system),
+        borrowed(memory),
+        borrowed(options),
+        borrowed(work),
+        borrowed(times),
+        borrowed(states),
+        borrowed(sections),
         most_steps,
     )
     work.rates[0] = 0.0  # the scratch has to be there until here
@@ -200,7 +200,7 @@ def step_on(
             filled += 1
         done = filled == times.shape[0]
         paused = taken == most_steps or found == sections.shape[0] > 0
-        if taken > 0 and (done or paused or looks(memory, options)):
+        if taken > 0 and (done or paused or frame_check_due(memory, options)):
             note_speeds(system, memory, options, work)
         if done:
             return _DONE, filled, found

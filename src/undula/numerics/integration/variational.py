@@ -28,13 +28,13 @@ from undula.numerics.integration.stepper_state import (
     has_its_orders,
 )
 from undula.numerics.integration.system import (
+    apply_drag,
     belongs,
     derivative,
     derivative_width,
     factor_derivative,
     matrix_width,
     solve_derivative,
-    weigh,
 )
 from undula.numerics.integration.time_loop import take_step
 from undula.numerics.integration.workspace import workspace
@@ -44,7 +44,7 @@ _NOT_FINITE = Status.NOT_FINITE.value
 
 
 @kernel
-def take_change(memory: Any, difference: Any, found: Any) -> None:
+def update_differences(memory: Any, difference: Any, found: Any) -> None:
     """Take a change (n,) of the end of a step into its backward differences (rows, n)."""
     order = memory.count[ORDER]
     for i in range(found.shape[0]):
@@ -68,11 +68,11 @@ def carry(
             predicted[i] += difference[j, i]
             past += options.gamma[j] * difference[j, i]
         scratch[2, i] = predicted[i] - past / options.alpha[order]
-    weigh(system, work.y, scratch[2], found)
+    apply_drag(system, work.y, scratch[2], found)
     solve_derivative(system, band, found)
     for i in range(n):
         found[i] -= predicted[i]
-    take_change(memory, difference, found)
+    update_differences(memory, difference, found)
 
 
 @entry(

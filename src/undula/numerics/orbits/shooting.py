@@ -18,7 +18,7 @@ from undula.numerics.linalg.banded import to_dense
 from undula.numerics.orbits.collocation import Outcome
 from undula.numerics.orbits.flow import RADAU_5, ByParameter, Flow, flow
 from undula.numerics.orbits.radau import Radau
-from undula.numerics.orbits.symmetry import Closure
+from undula.numerics.orbits.symmetry import OrbitSymmetry
 
 # Newton's method for the constraints ends after a step that leaves round-off; none takes so many.
 _SMALL_STEP, _MOST_STEPS = 1e-9, 10
@@ -96,7 +96,7 @@ class Shooting:
     """
 
     equations_at: Callable[[float], Equations]
-    closure: Closure
+    closure: OrbitSymmetry
     intervals: int
     method: Radau = RADAU_5
 
@@ -131,11 +131,11 @@ class Shooting:
             angle=angle,
             flow=came,
             basis=basis,
-            end=closure.bring(came.end, angle),
-            returned=closure.bring(change.by_start, angle),
-            velocity=closure.bring(change.by_duration, angle),
+            end=closure.apply(came.end, angle),
+            returned=closure.apply(change.by_start, angle),
+            velocity=closure.apply(change.by_duration, angle),
             turning=closure.turning(y),
-            by_parameter=closure.bring(change.by_parameters[:, 0], angle),
+            by_parameter=closure.apply(change.by_parameters[:, 0], angle),
             by_angle=closure.by_angle(came.end, angle),
         )
 

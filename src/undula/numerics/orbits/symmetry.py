@@ -38,7 +38,7 @@ def same(y: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Closure:
+class OrbitSymmetry:
     """The symmetry that brings the end of a motion back to its start.
 
     Attributes
@@ -49,16 +49,16 @@ class Closure:
         A rotation by an unknown angle; None if there is none.
     """
 
-    fixed: Callable[[Array], Array] = same
+    map: Callable[[Array], Array] = same
     rotation: Rotation | None = None
 
-    def bring(self, vectors: Array, angle: float) -> Array:
+    def apply(self, vectors: Array, angle: float) -> Array:
         """Return Q applied to a vector (n,), or to each column of (n, k)."""
         if vectors.ndim == 2:
-            columns = [self.bring(column, angle) for column in vectors.T]
+            columns = [self.apply(column, angle) for column in vectors.T]
             return np.stack(columns, axis=1) if columns else vectors
         turned = vectors if self.rotation is None else self.rotation.rotate(vectors, -angle)
-        return self.fixed(turned)
+        return self.map(turned)
 
     def turning(self, y: Array) -> Array:
         """Return S y (n,), the velocity of a unit rate of turning; 0 without a rotation."""
@@ -66,4 +66,4 @@ class Closure:
 
     def by_angle(self, y: Array, angle: float) -> Array:
         """Return the derivative of Q y (n,) by the angle; 0 without a rotation."""
-        return -self.turning(self.bring(y, angle))
+        return -self.turning(self.apply(y, angle))

@@ -11,7 +11,7 @@ from undula.analysis.regimes.classify import UNDECIDED
 from undula.arrays import Points
 from undula.reproduction.claims.measures import FORCE
 from undula.schema.sweep_axes import TRY, axes_of, verdicts_of
-from undula.sweeps.store import load_study
+from undula.sweeps.store import load_sweep
 
 __all__ = [
     "first_verdicts",
@@ -118,7 +118,7 @@ def first_verdicts(sweep: Any, places: ArrayLike, onsets: ArrayLike) -> str:
 
 
 def _study(sweep: Any) -> xr.Dataset:
-    return load_study(sweep.folder / "study.zarr")
+    return load_sweep(sweep.folder / "study.zarr")
 
 
 def _verdicts(store: xr.Dataset) -> Any:

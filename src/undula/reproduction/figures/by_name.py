@@ -14,12 +14,12 @@ from undula.reproduction.figures.frequencies import frequencies
 from undula.reproduction.figures.slowness import slowness
 from undula.reproduction.figures.stored_windings import windings
 from undula.reproduction.figures.two_motions import transition, two_links
-from undula.views.ramp.figure import step_diagram
+from undula.views.ramp.figure import ramp_diagram
 
 
 def stepped(*series: xr.Dataset) -> Figure:
-    """Draw stored series of steps side by side, as `step_diagram` does."""
-    return step_diagram(series)
+    """Draw stored series of steps side by side, as `ramp_diagram` does."""
+    return ramp_diagram(series)
 
 
 #: By the name that the catalogue uses; each takes what its tasks came to, one argument a task.

@@ -14,7 +14,7 @@ from undula.arrays import Array
 from undula.errors import is_number
 from undula.views.run.reading import read_scene
 from undula.views.run.scene import Scene
-from undula.views.run.winding import Winding, winding_figure
+from undula.views.run.winding import TipAngleSeries, winding_figure
 
 #: Beats of the tip's height: of which curves are drawn, and of which shapes.
 _CURVES, _SHAPES = 24.0, 5.3
@@ -45,7 +45,7 @@ def windings(*runs: xr.Dataset) -> Figure:
     )
 
 
-def _winding(run: xr.Dataset, which: str) -> Winding:
+def _winding(run: xr.Dataset, which: str) -> TipAngleSeries:
     scene, summary = read_scene(run), json.loads(run.attrs["summary"])
     shown = _finest(scene)
     rate = _rate(shown, summary)
@@ -53,7 +53,7 @@ def _winding(run: xr.Dataset, which: str) -> Winding:
     late = shown.times >= shown.end - _CURVES * beat
     title = f"({which})  $F$ = {float(summary['force']):g}: {scene.verdict}"
     length = min(_SHAPES * beat, shown.duration)
-    return Winding(title, shown.times[late], shown.nodes[late], length)
+    return TipAngleSeries(title, shown.times[late], shown.nodes[late], length)
 
 
 def _finest(scene: Scene) -> Scene:

@@ -13,9 +13,9 @@ from undula.reproduction.figures import by_name as reproduced
 from undula.reproduction.report.claim_table import left_out
 from undula.reproduction.tasks.task import Job, answers_of, carry_out
 from undula.storage.outputs import renewing
-from undula.storage.ramp_file import load_steps
+from undula.storage.ramp_file import load_ramp
 from undula.storage.run_file import load_result
-from undula.sweeps.store import load_study
+from undula.sweeps.store import load_sweep
 from undula.terminal.output import DONE
 from undula.views.common.figure_file import figure_bytes
 
@@ -23,8 +23,8 @@ _KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
 #: What tasks store besides their answers, and who reads it.
 _STORED: Mapping[str, Callable[[Path], Any]] = {
     "run.nc": load_result,
-    "steps.nc": load_steps,
-    "study.zarr": load_study,
+    "steps.nc": load_ramp,
+    "study.zarr": load_sweep,
 }
 
 

@@ -22,7 +22,7 @@ from undula.schema.sweep_axes import NOT_DONE
 from undula.storage.atomic import write_whole
 from undula.storage.digests import sealed_json, unsealed_json
 from undula.storage.seal import is_whole
-from undula.sweeps.store import load_study
+from undula.sweeps.store import load_sweep
 from undula.terminal.output import DONE
 
 #: Sources that read answers and compute none: their changes leave all that is kept as it is.
@@ -90,7 +90,7 @@ class Job:
         try:
             if not study.is_dir():
                 return True
-            return bool((load_study(study, shapes=False)["status"] != NOT_DONE).all())
+            return bool((load_sweep(study, shapes=False)["status"] != NOT_DONE).all())
         except InputError:
             return False
 

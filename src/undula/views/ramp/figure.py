@@ -39,7 +39,7 @@ _COLUMN, _HEIGHT, _LABEL, _GAP = 3.3, 7.0, 0.6, 0.16
 _FOOT, _NAMES = 0.012, 0.884
 
 
-def step_diagram(
+def ramp_diagram(
     datasets: Sequence[xr.Dataset],
     *,
     thresholds: Sequence[Mapping[str, float]] = (),
@@ -50,7 +50,7 @@ def step_diagram(
     Parameters
     ----------
     datasets : sequence of xarray.Dataset
-        At least one, as `load_steps` gives them, all along one parameter; each is a column.
+        At least one, as `load_ramp` gives them, all along one parameter; each is a column.
     thresholds : sequence of mapping of str to float
         For each series, in their order, names and values of solved thresholds; those beyond the
         values of the steps are left out.

@@ -22,7 +22,7 @@ _LOWER, _MIDDLE, _UPPER = (0.085, 0.17), (0.315, 0.17), (0.53, 0.40)
 
 
 @dataclass(frozen=True)
-class Winding:
+class TipAngleSeries:
     """A motion to be drawn.
 
     Attributes
@@ -44,7 +44,7 @@ class Winding:
     shown: float
 
 
-def winding_figure(motions: Sequence[Winding]) -> Figure:
+def winding_figure(motions: Sequence[TipAngleSeries]) -> Figure:
     """Draw motions side by side: shapes of the last part, angle of the tip about z, its height.
 
     Parameters
@@ -73,7 +73,7 @@ def winding_figure(motions: Sequence[Winding]) -> Figure:
 
 
 def _draw_column(
-    figure: Figure, motion: Winding, left: float, width: float, *, first: bool
+    figure: Figure, motion: TipAngleSeries, left: float, width: float, *, first: bool
 ) -> None:
     figure.text(left + 0.5 * width, 0.965, motion.title, ha="center", fontsize=10.5)
     start = motion.time[-1] - motion.shown
