@@ -14,10 +14,14 @@ PARALLEL := -n logical --dist loadfile
 
 # What runs compiled code by itself. With every index checked its sums are taken in another order, and
 # the bound on round-off of one test is too tight for it.
-CORE := $(patsubst %,tests/test_%.py,along sizes banded rod_equations rod_matrix rod_flow framed_rod winding \
-	integrate planar_steps tangents shape_sums sample_sums harmonic_sums decay_sums turning_sums flow orbits \
-	spinning flapping periodic_orbits branches held_bodies curved_filament chain) \
-	--deselect "tests/test_framed_rod.py::test_the_matrix_needs_no_pivoting[paper]"
+CORE := $(patsubst %,tests/analysis/observables/test_%.py,shape_sums sample_sums harmonic_sums decay_sums turning_sums) \
+	$(patsubst %,tests/analysis/solvers/test_%.py,along spinning flapping periodic_orbits held_bodies) \
+	$(patsubst %,tests/analysis/states/test_%.py,branches) \
+	$(patsubst %,tests/jit/test_%.py,sizes) \
+	$(patsubst %,tests/models/test_%.py,rod_equations rod_matrix rod_flow framed_rod winding planar_steps chain) \
+	$(patsubst %,tests/numerics/test_%.py,banded integrate tangents flow orbits) \
+	$(patsubst %,tests/physics/test_%.py,curved_filament) \
+	--deselect "tests/models/test_framed_rod.py::test_the_matrix_needs_no_pivoting[paper]"
 
 # The first interpreter that starts and is new enough. A name on the PATH may be an empty shim.
 CANDIDATES := python3.11 python3 python3.12 python3.13

@@ -32,7 +32,7 @@ BATCHES = 10
 #: in which anything happens, leading ones do not become parallel to all digits.
 MOST_STEPS = 50
 #: A step takes the logarithm of a change off by less than so many rtol: systems with known
-#: exponents show four to nine (tests/test_exponents.py).
+#: exponents show four to nine (tests/numerics/test_exponents.py).
 STEP_ERROR_IN_RTOL = 10.0
 
 

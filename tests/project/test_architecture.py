@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "undula"
 MODULES = sorted(SOURCE.rglob("*.py"))
 NETCDF_CALLS = re.compile(

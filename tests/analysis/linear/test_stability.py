@@ -30,7 +30,7 @@ from undula.models.initial_states import leading_mode
 from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
 from undula.models.loads.user_density import TableLoad
 
-PUBLISHED = tomllib.loads((Path(__file__).parent / "data" / "thresholds.toml").read_text())
+PUBLISHED = tomllib.loads((Path(__file__).with_name("thresholds.toml")).read_text())
 NAMED = {"tip": TipLoad(1.0), "uniform": LinearLoad(1.0)}
 MAIN_LOADS = [*NAMED.values(), LinearLoad(1.0, 1.0), PointLoad(1.0, 0.6), PowerLoad(1.0, 2.5)]
 SMOOTH_LOADS = [TipLoad(1.0), *(LinearLoad(1.0, slope) for slope in (-1.0, -0.5, 0.0, 0.5, 1.0))]

@@ -1,7 +1,7 @@
 """Damage done to stored files on purpose, and what becomes of those who read them.
 
-``python tests/damage.py KIND COUNT SEED`` damages the files of a kind so many times, in a process
-that ends itself where a reading hangs, and prints how the readings ended.
+``python tests/support/damage.py KIND COUNT SEED`` damages the files of a kind so many times, in a
+process that ends itself where a reading hangs, and prints how the readings ended.
 """
 
 import contextlib

@@ -16,6 +16,7 @@ import pytest
 import xarray as xr
 import zarr
 
+import damage
 import undula as un
 from damage import AGAIN, KINDS, SAME, TOLD, command, job, keep_answer, make_run, make_study, study
 from refusal import complaint
@@ -59,7 +60,7 @@ def damaged_at_random(kind: str, count: int, seed: int) -> dict[str, int]:
     """Return how readings ended, of a process of its own that a hang cannot outlive."""
     words = [
         sys.executable,
-        str(Path(__file__).with_name("damage.py")),
+        damage.__file__,
         kind,
         str(count),
         str(seed),

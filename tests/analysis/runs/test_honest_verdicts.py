@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import undula as un
+from pages import ROOT
 from refusal import complaint
 from small_studies import done, study_of
 from undula.analysis.ramps.ramp import Ramp, ramp
@@ -325,7 +326,7 @@ def test_a_bent_body_that_starts_straight_has_not_settled_before_it_moves() -> N
 
 
 def test_the_glossary_names_every_verdict() -> None:
-    page = (Path(__file__).parent.parent / "docs" / "glossary.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
     (row,) = (line for line in page.splitlines() if line.startswith("| verdict "))
     words = Path(names.__file__).read_text(encoding="utf-8")
     words += Path(names_without_symmetry.__file__).read_text(encoding="utf-8")

@@ -2,11 +2,11 @@
 
 import importlib.util
 import json
-from pathlib import Path
 
+from pages import ROOT
 from undula.reproduction.claims.catalogue import catalogue
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = ROOT / "docs"
 TOLD = json.loads((DOCS / "claims.json").read_text("utf-8"))
 ROWS = {(row["item"], row["claim"]): row for row in TOLD["claims"]}
 CLAIMS = {(name, told.name): told for name, item in catalogue().items() for told in item.claims}

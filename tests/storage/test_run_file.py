@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+import refusal
 from refusal import complaint
 from undula.storage import run_file as store
 from undula.storage.run_file import load_checkpoint, load_result, write_run
@@ -32,11 +33,13 @@ write_whole(Path(sys.argv[1]), b"half", overwrite=True)
 WRITTEN_ELSEWHERE = """
 import sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[2])
-from test_store import checkpoint, run
+sys.path[:0] = sys.argv[2:]
+from test_run_file import checkpoint, run
 from undula.storage.run_file import write_run
 write_run(Path(sys.argv[1]), run(), checkpoint())
 """
+
+PLACES = [str(Path(file).parent) for file in (__file__, refusal.__file__)]
 
 arrays = st.sampled_from([np.float64, np.int64, np.bool_]).flatmap(
     lambda dtype: hnp.arrays(dtype, hnp.array_shapes(min_dims=0, max_dims=3, min_side=0))
@@ -131,7 +134,7 @@ def test_the_same_content_gives_the_same_bytes_in_another_process(
     stored: Path, tmp_path: Path
 ) -> None:
     other = tmp_path / "other.nc"
-    command = [sys.executable, "-c", WRITTEN_ELSEWHERE, str(other), str(Path(__file__).parent)]
+    command = [sys.executable, "-c", WRITTEN_ELSEWHERE, str(other), *PLACES]
     subprocess.run(command, check=True, env={**os.environ, "PYTHONHASHSEED": "7"})
     assert other.read_bytes() == stored.read_bytes()
 

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = sorted(
     [ROOT / "README.md", *DOCS.glob("*.md"), *DOCS.glob("theory/*.md"), *DOCS.glob("api/*.md")]

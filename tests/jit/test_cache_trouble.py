@@ -42,7 +42,7 @@ print(outer(np.ones(3)), sum(outer.stats.cache_hits.values()), trouble())
 """
 #: What a process prints that computes, and finds the function on disk or not.
 FOUND, MADE = "2.0 1 None", "2.0 0 None"
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
