@@ -13,6 +13,7 @@ import undula as un
 from chains import OPTIONS, chain, random_state, tangents_of, virtual_work
 from refusal import complaint
 from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.checkpoint import checkpoint, resume
 from undula.analysis.runs.integrate import carry_on
 from undula.analysis.runs.run import Run
 from undula.analysis.runs.simulation import Simulation
@@ -269,8 +270,8 @@ def test_a_run_that_is_taken_up_goes_on_with_its_springs_wound() -> None:
     whole = Simulation.begin(model, un.planar(model, 0.3), schedule)
     while np.abs(model.joint_angles(whole.memory.differences[0, :-RATES])).max() < 1.5 * np.pi:
         assert whole.advance()
-    saved = {name: array.copy() for name, array in whole.checkpoint().items()}
-    taken_up = Simulation.resume(model, schedule, saved)
+    saved = {name: array.copy() for name, array in checkpoint(whole).items()}
+    taken_up = resume(model, schedule, saved)
     for simulation in (whole, taken_up):
         carry_on(simulation)
     np.testing.assert_array_equal(taken_up.states, whole.states)

@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 import undula as un
 from refusal import complaint
 from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.checkpoint import checkpoint, resume
 from undula.analysis.runs.integrate import carry_on
 from undula.analysis.runs.run import Run
 from undula.analysis.runs.simulation import Simulation
@@ -157,9 +158,9 @@ def test_a_run_that_is_taken_up_is_the_same_run(twist: str) -> None:
     schedule, model = Schedule(until=0.02, samples=800), curved(twist, 12)
     whole = Simulation.begin(model, un.helix(model, 0.5), schedule)
     whole.advance()
-    saved = {name: array.copy() for name, array in whole.checkpoint().items()}
+    saved = {name: array.copy() for name, array in checkpoint(whole).items()}
     assert 0.0 < whole.time < 0.02
-    taken_up = Simulation.resume(model, schedule, saved)
+    taken_up = resume(model, schedule, saved)
     for simulation in (whole, taken_up):
         carry_on(simulation)
     np.testing.assert_array_equal(taken_up.states, whole.states)

@@ -9,6 +9,7 @@ import pytest
 import undula as un
 from undula.analysis.regimes.lyapunov import lyapunov
 from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.checkpoint import checkpoint, resume
 from undula.analysis.runs.integrate import carry_on
 from undula.analysis.runs.simulation import Simulation
 from undula.analysis.states.periodic_record import Periodic
@@ -214,8 +215,8 @@ def test_a_run_that_has_settled_but_cannot_be_named_goes_on_until_it_can() -> No
         model, un.kicked(model, 0.3), Schedule("settled", limit=20.0, rtol=1e-5)
     )
     assert carry_on(simulation).verdict.name == "planar flapping"
-    asked_for = simulation.shown_until
-    assert simulation.settled.shown_until < asked_for <= simulation.time
+    asked_for = simulation.observe_until
+    assert simulation.observation.until < asked_for <= simulation.time
     # What was asked for outlasts a stop.
-    resumed = Simulation.resume(model, simulation.schedule, simulation.checkpoint())
-    assert resumed.shown_until == asked_for
+    resumed = resume(model, simulation.schedule, checkpoint(simulation))
+    assert resumed.observe_until == asked_for

@@ -13,6 +13,7 @@ from refusal import complaint
 from small_studies import done, study_of
 from undula.analysis.observables.shapes import displacement
 from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.checkpoint import resume
 from undula.analysis.runs.early_stop import (
     NEAR,
     SLOWEST,
@@ -21,10 +22,9 @@ from undula.analysis.runs.early_stop import (
     motion_of,
     turned_by,
 )
-from undula.analysis.runs.integrate import TIGHT
 from undula.analysis.runs.run import Run
 from undula.analysis.runs.settling import MotionRates
-from undula.analysis.runs.simulation import Simulation
+from undula.analysis.runs.stop_rule import TIGHT_RTOL
 from undula.analysis.states.relative_equilibrium import Disturbances
 from undula.numerics.integration.system import RATES
 from undula.sweeps.point import point
@@ -128,11 +128,11 @@ def test_what_is_no_simple_motion_is_told_from_exact_steps() -> None:
     )
     assert run.verdict.name == "planar flapping"
     assert run.tight_from == run.summary()["tight_from"] > 0.0
-    assert run.schedule.rtol == TIGHT
+    assert run.schedule.rtol == TIGHT_RTOL
     # Which a checkpoint remembers.
     asked = Schedule("solved", limit=4.0, samples=400, rtol=COARSE)
-    resumed = Simulation.resume(model, asked, run.checkpoint)
-    assert (resumed.schedule.rtol, resumed.tight_from) == (TIGHT, run.tight_from)
+    resumed = resume(model, asked, run.checkpoint)
+    assert (resumed.schedule.rtol, resumed.tight_from) == (TIGHT_RTOL, run.tight_from)
     assert run_of(under(250.0)).tight_from is None
 
 
@@ -224,7 +224,7 @@ def test_a_run_that_was_left_can_be_gone_on_with() -> None:
     model = under(100.0)
     left = run_of(model)
     time = 2.0 * float(left.motion.time[-1])
-    on = Simulation.resume(model, Schedule(until=time, samples=100, rtol=COARSE), left.checkpoint)
+    on = resume(model, Schedule(until=time, samples=100, rtol=COARSE), left.checkpoint)
     while on.advance():
         pass
     assert Run.of(on).motion.time[-1] == pytest.approx(time, rel=0.1)

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 import undula as un
+from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.settling import (
     MANY_REPETITIONS,
     NOISE_IN_RTOL,
     REPETITIONS,
-    SHOWN_ARRIVED,
-    SHOWN_CYCLES,
     TOLERANCE_IN_RTOL,
     MotionRates,
     Settled,
-    Watch,
+    SettlingDetector,
 )
+from undula.analysis.runs.stop_rule import OBSERVED_CYCLES, OBSERVED_CYCLES_AT_NOISE, observation_of
 
 RTOL, BEAT = 1e-6, 0.01
 #: A change of shape that counts neither as settled by its decay nor as an error of the integration.
@@ -30,9 +30,9 @@ def shape(off: float) -> np.ndarray:
     return np.stack([bend, off * other, s], axis=-1)
 
 
-def watched(offs: list[float], every: float = BEAT) -> Watch:
+def watched(offs: list[float], every: float = BEAT) -> SettlingDetector:
     """A watch that has seen these shapes at maxima of the energy."""
-    watch = Watch(RTOL, 0.1)
+    watch = SettlingDetector(RTOL, 0.1)
     for number, off in enumerate(offs):
         time = (number + 1) * every
         pace = MotionRates(time, shape_speed=50.0, displacement=0.3, turn_rate=0.0)
@@ -89,10 +89,12 @@ def test_what_still_settles_is_shown_for_longer_than_what_has_arrived() -> None:
     still, arrived = told(slow), told([0.0] * (3 * REPETITIONS))
     assert still is not None
     assert arrived is not None
-    assert (still.cycles, arrived.cycles) == (SHOWN_CYCLES, SHOWN_ARRIVED)
+    schedule = Schedule("settled", rtol=RTOL)
+    longer, shorter = (observation_of(settled, schedule) for settled in (still, arrived))
+    assert (longer.cycles, shorter.cycles) == (OBSERVED_CYCLES, OBSERVED_CYCLES_AT_NOISE)
     # Two mirror images a beat.
-    shown = arrived.shown_until - arrived.since
-    assert shown == pytest.approx(2.0 * SHOWN_ARRIVED * BEAT)
+    shown = shorter.until - arrived.since
+    assert shown == pytest.approx(2.0 * OBSERVED_CYCLES_AT_NOISE * BEAT)
 
 
 def test_a_beat_with_which_the_steps_keep_step_settles_at_once() -> None:

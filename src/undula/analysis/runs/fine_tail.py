@@ -63,7 +63,7 @@ class CloseUp:
 
 def close_up(simulation: Simulation) -> CloseUp | None:
     """Return the last periods of a simulation at fine intervals; None where its samples will do."""
-    fast, slow = simulation.watch.periods(simulation.time)
+    fast, slow = simulation.detector.periods(simulation.time)
     interval = simulation.interval
     if fast is None or interval * ENOUGH_A_PERIOD <= fast:
         return None

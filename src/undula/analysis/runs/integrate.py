@@ -1,24 +1,22 @@
 """Run a model: the call behind `undula.integrate` and behind the command `undula run`."""
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-import numpy as np
-
 from undula.analysis.regimes.classify import UNDECIDED
-from undula.analysis.regimes.evidence import GROWTH_FACTOR
-from undula.analysis.regimes.late_window import PLANAR_TOLERANCE
-from undula.analysis.regimes.names import leaves_its_plane
-from undula.analysis.regimes.recurrence import RECURRENT
-from undula.analysis.regimes.trends import Halves, out_of_plane
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.classify_run import CutShortError, Exponents, Watch
 from undula.analysis.runs.run import Run
-from undula.analysis.runs.settling import SHOWN_CYCLES, Settled
 from undula.analysis.runs.simulation import Simulation
+from undula.analysis.runs.stop_rule import (
+    Continue,
+    Stop,
+    when_cut_short,
+    when_irregular,
+    when_observed,
+)
 from undula.arrays import State
 from undula.interrupts import interruptible
 from undula.models.model import Model
@@ -27,10 +25,6 @@ from undula.numerics.integration import stepper_state as names
 #: Maxima of the energy after which a run to the settled state is asked whether its motion is
 #: irregular, and after twice as many again and again.
 FIRST_ASKED = 240
-#: What is told from the few beats that a run to the solved state shows first.
-BRIEFLY_TOLD = "planar flapping"
-#: What it is else is told from steps that are as exact: errors of larger ones may keep it alive.
-TIGHT = 1e-6
 #: Why there are no Lyapunov exponents although they were begun.
 STOPPED = ("they were interrupted", "they were out of their budget of time")
 #: Runs that ended so are not looked at any longer.
@@ -131,25 +125,23 @@ def carry_on(
     """
     begun = time.monotonic()
     due = FIRST_ASKED
-    while due <= simulation.watch.seen:
+    while due <= simulation.detector.seen:
         due *= 2
     with interruptible() as interrupted:
         watch = _watch(simulation, begun, budget, interrupted, progress)
         while True:
             goes_on, seconds = simulation.advance(), time.monotonic() - begun
             if not goes_on:
-                judged = _settled(simulation, watch)
+                settled = simulation.ending is Ending.SETTLED
+                judged = _observed(simulation, watch) if settled else None
                 if simulation.ending is not Ending.RUNNING:
                     return judged
-            if interrupted():
-                simulation.ending = Ending.INTERRUPTED
-                return None
-            if seconds > budget:
-                simulation.ending = Ending.OUT_OF_TIME
+            simulation.apply(when_cut_short(seconds, budget, interrupted=interrupted()))
+            if simulation.ending is not Ending.RUNNING:
                 return None
             if progress is not None:
                 progress(_progress(simulation, seconds))
-            if simulation.watch.seen >= due:
+            if simulation.detector.seen >= due:
                 due *= 2
                 judged = _irregular(simulation, watch)
                 if judged is not None:
@@ -193,60 +185,32 @@ def _watch(
     return watch
 
 
-def _settled(simulation: Simulation, watch: Watch) -> Run | None:
-    """Return a run that has settled; have it go on if it takes more of it to name the motion."""
-    if simulation.ending is not Ending.SETTLED:
-        return None
-    run, settled = Run.of(simulation), simulation.settled
-    if settled and settled.brief and not _briefly_told(run, settled, watch):
-        if settled.brief == 1 and simulation.schedule.rtol > TIGHT:
-            simulation.tighten(TIGHT)
-            return None
-        simulation.settled = _shown_again(settled, run)
-        simulation.ending = Ending.RUNNING
-    elif (longer := run.judged(watch).verdict.longer) and simulation.time < simulation.schedule.end:
-        simulation.shown_until = simulation.time + longer
-        simulation.ending = Ending.RUNNING
+def _observed(simulation: Simulation, watch: Watch) -> Run:
+    """Return a run that has settled; have it go on if that does not suffice to classify it."""
+    run, observation = Run.of(simulation), simulation.observation
+    assert observation is not None  # which is what it has settled to
+
+    def classify() -> tuple[str, float | None]:
+        verdict = run.judged(watch).verdict
+        return verdict.name, verdict.longer
+
+    window = run.since(observation.settled.since)
+    schedule, time_reached = simulation.schedule, simulation.time
+    simulation.apply(when_observed(schedule, time_reached, observation, window, classify))
     return run
-
-
-def _briefly_told(run: Run, settled: Settled, watch: Watch) -> bool:
-    """Tell whether a run shows enough to be named; what leaves its plane has no name yet."""
-    # That is a part of judging it which is told for far less than the whole.
-    still_changing = leaves_its_plane(run.since(settled.since).nodes)
-    return not still_changing and run.judged(watch).verdict.name == BRIEFLY_TOLD
-
-
-def _shown_again(settled: Settled, run: Run) -> Settled:
-    """Return a motion that was shown too briefly as it is to be shown next: later, then longer."""
-    if settled.brief == 1:
-        return replace(settled, cycles=SHOWN_CYCLES, brief=0)
-    half = 0.5 * (float(run.motion.time[-1]) - settled.since)
-    since = settled.since + half * (1.0 + _until_flat(out_of_plane(run.since(settled.since).nodes)))
-    return replace(settled, since=since, brief=settled.brief - 1)
-
-
-def _until_flat(share: Halves) -> float:
-    """Return in how many halves more of a window a motion will be flat, if it flattens at all."""
-    if not share.first > GROWTH_FACTOR * share.last > GROWTH_FACTOR * PLANAR_TOLERANCE:
-        return 0.0
-    return math.log(share.last / PLANAR_TOLERANCE) / math.log(share.first / share.last)
 
 
 def _irregular(simulation: Simulation, watch: Watch) -> Run | None:
     """Return a run that waits for its motion to repeat itself if it is seen not to."""
-    if not simulation.schedule.open_ended or simulation.settled is not None:
+    returned = simulation.detector.returned()
+    decision = when_irregular(simulation.schedule, simulation.observation, returned)
+    simulation.apply(decision)
+    if not isinstance(decision, Stop):
         return None
-    if simulation.watch.returned().min(initial=np.inf) <= RECURRENT:
-        return None  # it does, but for a little, and takes its time to settle
-    if simulation.schedule.until == "solved" and simulation.schedule.rtol > TIGHT:
-        simulation.tighten(TIGHT)
-        return None
-    simulation.ending = Ending.IRREGULAR
     run = Run.of(simulation).judged(watch)
     if run.lyapunov is not None and run.verdict.name != UNDECIDED:
         return run
-    simulation.ending = Ending.RUNNING
+    simulation.apply(Continue())
     return None
 
 

@@ -22,12 +22,14 @@ from undula.analysis.regimes.classify import STRAIGHT, Verdict
 from undula.analysis.regimes.lyapunov import Lyapunov
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.accuracy import Errors, Health, errors_of, health_of
+from undula.analysis.runs.checkpoint import checkpoint
 from undula.analysis.runs.classify_run import Classified, Exponents, Watch, failed, judge
 from undula.analysis.runs.early_stop import ReachedState
 from undula.analysis.runs.fine_tail import CloseUp, close_up
 from undula.analysis.runs.finite_separation import Separation
 from undula.analysis.runs.settling import Settled
 from undula.analysis.runs.simulation import Simulation
+from undula.analysis.runs.stop_rule import Observation
 from undula.analysis.states.extrapolation import links_are_body
 from undula.arrays import Array, Nodes
 from undula.models.model import Model
@@ -47,9 +49,9 @@ class Run:
         The whole run at the asked samples.
     closer : CloseUp or None
         Its last periods at finer intervals; None where the samples are fine enough.
-    settled : Settled or None
-        How it repeats itself, if it was watched for that and does.
-    arrival : Arrival or None
+    observation : Observation or None
+        How it repeats itself, and how long that was observed; None if it does not.
+    arrival : ReachedState or None
         The state that a run to the solved one was left for: its verdict and figures are those of
         the state, its motion the trajectory so far.
     tight_from : float or None
@@ -66,7 +68,7 @@ class Run:
     cause: str
     motion: Motion
     closer: CloseUp | None
-    settled: Settled | None
+    observation: Observation | None
     arrival: ReachedState | None
     tight_from: float | None
     checkpoint: Mapping[str, Array]
@@ -75,6 +77,7 @@ class Run:
     @classmethod
     def of(cls, simulation: Simulation, exponents: Exponents = Exponents.IF_IRREGULAR) -> Self:
         """Return the result that a simulation has come to so far."""
+        seen = simulation.observation  # the last step may lie beyond the samples
         return cls(
             model=simulation.model,
             schedule=simulation.schedule,
@@ -82,12 +85,17 @@ class Run:
             cause=simulation.cause,
             motion=Motion.of(simulation.model, simulation.times, simulation.states),
             closer=close_up(simulation),
-            settled=_seen(simulation.settled, simulation.time),
+            observation=seen.from_at_most(simulation.time) if seen else None,
             arrival=simulation.arrival,
             tight_from=simulation.tight_from,
-            checkpoint=simulation.checkpoint(),
+            checkpoint=checkpoint(simulation),
             exponents=exponents,
         )
+
+    @property
+    def settled(self) -> Settled | None:
+        """How it repeats itself, if it was watched for that and does."""
+        return None if self.observation is None else self.observation.settled
 
     def judged(self, watch: Watch) -> Self:
         """Return the run, judged at once: `watch` is told how far exponents are."""
@@ -253,7 +261,7 @@ class Run:
             "precession": self._precession(),
             "time": float(self.motion.time[-1]),
             "window": [float(late.time[0]), float(late.time[-1])],
-            "settled": asdict(self.settled) if self.settled else None,
+            "settled": self.observation.as_dict() if self.observation else None,
             "settled_from": self.settled.since if self.settled else None,
             "solved": self.arrival.as_dict() if self.arrival else None,
             "tight_from": self.tight_from,
@@ -285,11 +293,6 @@ class Run:
             f" (power balance to {self.health.power_balance_error:.1g},"
             f" length to {self.health.length_error:.1g}, {self.health.steps} steps)"
         )
-
-
-def _seen(settled: Settled | None, time: float) -> Settled | None:
-    """Return how a run of so many samples has settled: its last step may lie beyond them."""
-    return settled and replace(settled, since=min(settled.since, time))
 
 
 def _told(name: str, found: Frequency | None) -> dict[str, float | None]:

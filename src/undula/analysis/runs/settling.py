@@ -39,15 +39,6 @@ MANY_REPETITIONS = 20
 #: Changes that are larger by more than this factor in the later half of them grow; they lead
 #: somewhere if they add up to more than this times the largest.
 HOVERING = 1.5
-#: Beats or turns of a settled motion that a run goes on to show; and of one that has arrived, whose
-#: changes are no more than errors of the integration. What still settles slowly, as a beat into its
-#: plane, is named wrongly if it is seen more briefly (docs/notes/points.md).
-SHOWN_CYCLES, SHOWN_ARRIVED = 12, 6
-#: And of one that is shown for no longer than a beat in its plane takes to be told as such, and how
-#: often that is tried.
-SHOWN_BRIEFLY, BRIEFLY = 3, 6
-#: A shape at rest is shown for this part more of the time that it took to come to rest.
-STILL = 1.25
 #: Most maxima of the energy that one period may have.
 MOST_MAXIMA = 8
 #: Looks at the pace that are kept.
@@ -78,10 +69,6 @@ class Settled:
         Time after which the shape repeats up to rotation and reflection [T]; None if it is steady.
     turn : float or None
         Time of one turn about the axis [T]; None without rotation.
-    cycles : int
-        Beats or turns for which it should be seen.
-    brief : int
-        How often it may be shown so briefly that nothing but a beat in a plane can be told.
     """
 
     kind: Literal["at rest", "still", "steady", "periodic"]
@@ -89,16 +76,6 @@ class Settled:
     remaining: float
     period: float | None
     turn: float | None
-    cycles: int = SHOWN_CYCLES
-    brief: int = 0
-
-    @property
-    def shown_until(self) -> float:
-        """Time until which it should be seen, to measure its frequencies [T]."""
-        if self.kind == "still":
-            return STILL * self.since
-        cycle = 2.0 * self.period if self.period else self.turn  # two mirror images a beat
-        return self.since + self.cycles * (cycle or 0.0)
 
 
 @dataclass(frozen=True)
@@ -117,8 +94,8 @@ class MotionRates:
 
 
 @dataclass
-class Watch:
-    """Collects what a run notes about itself and judges it.
+class SettlingDetector:
+    """Records how a run moves, and detects whether its motion has settled.
 
     Attributes
     ----------
@@ -128,8 +105,6 @@ class Watch:
         Displacement at the start, as the integrator measures it; 0 of one that is straight.
     compare : callable
         How shapes are compared.
-    brief : bool
-        Whether beats are shown briefly first.
     seen : int
         Maxima of the energy in all.
     """
@@ -137,7 +112,6 @@ class Watch:
     rtol: float
     start: float
     compare: Compare = aligned_distance
-    brief: bool = False
     paces: deque[MotionRates] = field(default_factory=lambda: deque(maxlen=MOST_LOOKS))
     returns: deque[tuple[float, Nodes]] = field(
         default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MOST_MAXIMA)
@@ -214,10 +188,7 @@ class Watch:
             last = self.paces[-1]
             if last.shape_speed * period < LEAST_SWING * last.displacement:
                 return Settled("steady", times[0], remaining, None, last.turn)
-            arrived = remaining <= NOISE_IN_RTOL * self.rtol
-            cycles = SHOWN_ARRIVED if arrived else SHOWN_CYCLES
-            shown = (SHOWN_BRIEFLY, BRIEFLY) if self.brief else (cycles, 0)
-            return Settled("periodic", times[0], remaining, period, last.turn, *shown)
+            return Settled("periodic", times[0], remaining, period, last.turn)
         return None
 
     def _repetitions(self, lag: int, count: int) -> tuple[list[float], Array]:

@@ -8,18 +8,19 @@ every other sample, whenever there are twice as many as asked.
 
 import math
 from collections import deque
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from undula.analysis.observables.alignment import comparison
 from undula.analysis.run_settings import Ending, Schedule
+from undula.analysis.runs import stop_rule as rules
 from undula.analysis.runs.early_stop import ReachedState, StateDetector
 from undula.analysis.runs.memory_needed import refuse_too_large
 from undula.analysis.runs.sample_buffer import SampleBuffer, parts_of
-from undula.analysis.runs.settling import MotionRates, Settled, Watch
+from undula.analysis.runs.settling import MotionRates, Settled, SettlingDetector
+from undula.analysis.runs.stop_rule import Decision, Observation
 from undula.arrays import Array, State
 from undula.errors import InputError
 from undula.models.given_shapes import numbers, refuse_misfits
@@ -44,29 +45,31 @@ KEPT_MARKS, MARKED_STEPS = 400, 450
 
 @dataclass
 class Simulation:
-    """A run in the making. Use `begin` or `resume` to get one.
+    """A run in the making, from `begin` or from `undula.analysis.runs.checkpoint.resume`.
 
     Attributes
     ----------
     model, schedule
         What runs, and how.
-    memory : Memory
+    memory : StepperState
         The integrator's.
     interval : float
         Time between samples [T].
     rows : list of ndarray
         Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals
         of the turning rate, of the active power and of the dissipation.
-    recent : Recent
+    recent : SampleBuffer
         Samples at finer intervals, of the end so far.
-    arrival : Arrival or None
+    arrival : ReachedState or None
         The state that a run to the solved one was left for.
     tight_from : float or None
-        Time from which on its steps are more exact than was asked for, see `tighten` [T].
+        Time from which on its steps are more exact than was asked for, see `Tighten` [T].
     sampled : int
         Number of samples so far.
-    shown_until : float
-        A motion that has settled is shown until then, or until it has been seen often enough [T].
+    observation : Observation or None
+        How the motion that it has settled to is observed; None before.
+    observe_until : float
+        Time until which a settled motion is observed at least [T].
     """
 
     model: Model
@@ -75,28 +78,30 @@ class Simulation:
     interval: float
     rows: list[Array] = field(default_factory=list)
     ending: Ending = Ending.RUNNING
-    settled: Settled | None = None
+    observation: Observation | None = None
     arrival: ReachedState | None = None
     tight_from: float | None = None
-    shown_until: float = 0.0
+    observe_until: float = 0.0
     cause: str = ""
     recent: SampleBuffer = field(default_factory=SampleBuffer)
     sampled: int = field(init=False)
     marks: deque[StepperState] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
 
     def __post_init__(self) -> None:
-        """Make what follows from the rest."""
+        """Count the samples, and begin to observe."""
         self.sampled = sum(map(len, self.rows))  # asked for several times a look
+        self._observe_afresh()
+
+    def _observe_afresh(self) -> None:
+        """Begin to observe the run under its present schedule."""
         self.options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
         tangent_distance = self.model.tangent_distance(self.model.positions(first[:-RATES]))
         if tangent_distance <= ROUND_OFF * self.model.links:
             tangent_distance = 0.0
         compare = comparison(axisymmetric=self.model.axisymmetric)
-        self.watch = Watch(
-            self.schedule.rtol, tangent_distance, compare, self.schedule.until == "solved"
-        )
-        self.lookout = StateDetector(self.model)
+        self.detector = SettlingDetector(self.schedule.rtol, tangent_distance, compare)
+        self.state_detector = StateDetector(self.model)
         self.marks.append(copied(self.memory))
 
     @classmethod
@@ -115,6 +120,11 @@ class Simulation:
         step = reach / speed if speed > 0.0 else schedule.end * 1e-3
         memory = start(model.system, NDF, unknowns, rates, 0.0, min(step, schedule.end))
         return cls(model, schedule, memory, schedule.interval)
+
+    @property
+    def settled(self) -> Settled | None:
+        """The motion that it has settled to; None before."""
+        return None if self.observation is None else self.observation.settled
 
     @property
     def time(self) -> float:
@@ -139,13 +149,13 @@ class Simulation:
         last = math.ceil(self.schedule.end / self.interval - 1e-9)
         ahead = np.arange(self.sampled, min(self.sampled + MOST_SAMPLES, self._enough(), last + 1))
         if ahead.size == 0:
-            self.ending = self._last_ending()
+            self.apply(rules.at_the_end(self.schedule, self.observation))
             return False
         width = self.memory.differences.shape[1]
         noted = self._parts()
         parts = max(1, noted)
         fine = np.arange(self._first(parts), ahead[-1] * parts + 1)
-        most = self.lookout.steps if self.schedule.until == "solved" else MOST_STEPS
+        most = self.state_detector.steps if self.schedule.until == "solved" else MOST_STEPS
         states, sections = np.empty((fine.size, width)), np.empty((most, 1 + width))
         code, filled, found = advance(
             self.model.system,
@@ -172,8 +182,23 @@ class Simulation:
         if self.memory.count[names.STEPS] >= self.marks[-1].count[names.STEPS] + MARKED_STEPS:
             self.marks.append(copied(self.memory))
         shapes = self._nodes(sections[:found, 1:]) if found else ()
-        self.watch.note(self._pace(), list(zip(sections[:found, 0].tolist(), shapes, strict=True)))
+        self.detector.note(
+            self._pace(), list(zip(sections[:found, 0].tolist(), shapes, strict=True))
+        )
         return not self.schedule.open_ended or self._goes_on()
+
+    def apply(self, decision: Decision) -> None:
+        """Carry out a decision of the stop rule."""
+        match decision:
+            case rules.Stop(ending):
+                self.ending = ending
+            case rules.Observe(observation, until):
+                self.observation, self.observe_until = observation, max(self.observe_until, until)
+                self.ending = Ending.RUNNING
+            case rules.Tighten(rtol):
+                self._tighten(rtol)
+            case rules.Continue():
+                self.ending = Ending.RUNNING
 
     def _keep(self, rows: Array) -> None:
         """Add samples to those so far."""
@@ -182,8 +207,8 @@ class Simulation:
 
     def _parts(self) -> int:
         """Return in how many parts an interval is sampled for the close-up; 0 if for none."""
-        fast, _ = self.watch.periods(self.time)
-        if not self.schedule.open_ended or fast is None or self.watch.turns_steadily():
+        fast, _ = self.detector.periods(self.time)
+        if not self.schedule.open_ended or fast is None or self.detector.turns_steadily():
             return 0
         return parts_of(self.interval, fast, self.recent.interval)
 
@@ -202,44 +227,44 @@ class Simulation:
 
     def _enough(self) -> int:
         """Return how many samples are enough as far as is known: those of a motion as shown."""
-        if not self.schedule.open_ended or self.settled is None:
+        if not self.schedule.open_ended or self.observation is None:
             return np.iinfo(np.int64).max
-        until = max(self.settled.shown_until, self.shown_until)
+        until = max(self.observation.until, self.observe_until)
         return max(self.sampled, math.ceil(until / self.interval - 1e-9)) + 1
 
-    def _last_ending(self) -> Ending:
-        """Return the ending of a run whose time is over."""
-        if not self.schedule.open_ended:
-            return Ending.DONE
-        return Ending.SETTLED if self.settled else Ending.LIMIT
-
     def _goes_on(self) -> bool:
-        """Judge whether the motion has settled and been shown; thin the samples of a long run."""
-        if self.schedule.until == "solved":
-            last = self.rows[-1][-1] if len(self.rows[-1]) else self.states[-1]
-            self.arrival = self.lookout.arrival(self.watch.paces, self.time, last[:-RATES])
-            if self.arrival:
-                self.ending = Ending.SOLVED
-                return False
-        found = self.watch.settled()
-        if found is None or self.settled is None:
-            self.settled = found  # a motion that leaves again had not settled
-        shown = self.settled.shown_until if self.settled else math.inf
-        if self.time >= max(shown, self.shown_until):
-            self.ending = Ending.SETTLED
+        """Apply the rules of an open-ended run; thin its samples if it goes on."""
+        self.apply(self._decision())
+        if self.ending is not Ending.RUNNING:
             return False
         if self.sampled >= 2 * self.schedule.samples:
             self.rows, self.sampled = [self.states[::2].copy()], -(-self.sampled // 2)
             self.interval *= 2.0
         return True
 
-    def tighten(self, rtol: float) -> None:
-        """Go on with more exact steps, and begin anew to watch whether it settles."""
+    def _decision(self) -> Decision:
+        """Return whether the run has reached a state, or settled and been observed."""
+        if self.schedule.until == "solved":
+            last = self.rows[-1][-1] if len(self.rows[-1]) else self.states[-1]
+            self.arrival = self.state_detector.arrival(
+                self.detector.paces, self.time, last[:-RATES]
+            )
+            if self.arrival:
+                return rules.at_a_state(self.arrival)
+        settled = self.detector.settled()
+        if settled is None:
+            self.observation = None  # a motion that leaves again had not settled
+        elif self.observation is None:
+            self.observation = rules.observation_of(settled, self.schedule)
+        return rules.when_settled(self.time, self.observation, self.observe_until)
+
+    def _tighten(self, rtol: float) -> None:
+        """Go on with more exact steps, and begin anew to observe."""
         self.schedule = replace(self.schedule, rtol=rtol)
-        self.tight_from, self.settled, self.shown_until = self.time, None, 0.0
+        self.tight_from, self.observation, self.observe_until = self.time, None, 0.0
         self.ending = Ending.RUNNING
         self.marks.clear()  # whose steps were others
-        self.__post_init__()
+        self._observe_afresh()
 
     def _pace(self) -> MotionRates:
         real = self.memory.real
@@ -263,38 +288,6 @@ class Simulation:
         earlier = (mark for mark in reversed(self.marks) if mark.real[names.TIME] <= time)
         found: StepperState = next(earlier)
         return found
-
-    def checkpoint(self) -> dict[str, Array]:
-        """Return all that `resume` needs, as arrays that stay as they are when the run goes on."""
-        saved: dict[str, Any] = {"states": self.states, "interval": np.float64(self.interval)}
-        saved["shown_until"] = np.float64(self.shown_until)
-        if self.tight_from is not None:
-            saved["tight"] = np.array([self.tight_from, self.schedule.rtol])
-        saved |= {f"watch_{name}": array for name, array in self.watch.to_arrays().items()}
-        for prefix, memory in (("memory", self.memory), ("mark", self.marks[0])):
-            for name, array in memory._asdict().items():
-                saved[f"{prefix}_{name}"] = np.array(array)
-        return saved
-
-    @classmethod
-    def resume(cls, model: Model, schedule: Schedule, saved: Mapping[str, Array]) -> Self:
-        """Return the run that a checkpoint was taken of, ready to go on to `schedule`'s end."""
-        memory, mark = (
-            StepperState(*(np.array(saved[f"{prefix}_{name}"]) for name in StepperState._fields))
-            for prefix in ("mark", "memory")[::-1]
-        )
-        refuse_too_large(model, schedule)
-        since, rtol = saved.get("tight", (None, schedule.rtol))
-        schedule = replace(schedule, rtol=float(rtol))
-        simulation = cls(
-            model, schedule, memory, float(saved["interval"]), [np.array(saved["states"])]
-        )
-        simulation.tight_from = None if since is None else float(since)
-        simulation.shown_until = float(saved["shown_until"])
-        simulation.marks.appendleft(mark)
-        watched = ("seen", "paces", "return_times", "return_nodes")
-        simulation.watch.note_arrays({name: saved[f"watch_{name}"] for name in watched})
-        return simulation
 
 
 def copied(memory: StepperState) -> StepperState:

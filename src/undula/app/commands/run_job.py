@@ -10,6 +10,7 @@ from typing import Any
 import xarray as xr
 
 from undula.analysis.run_settings import Ending
+from undula.analysis.runs.checkpoint import resume
 from undula.analysis.runs.simulation import Simulation
 from undula.errors import InputError
 from undula.inputs.build import build_model, build_schedule, build_start
@@ -79,7 +80,7 @@ def take_up(result: Path, until: float | None) -> Job:
     _refuse_what_cannot_go_on(result, stored, until)
     if until is not None:
         wanted = _until(wanted, until, float(saved["interval"]))
-    simulation = Simulation.resume(build_model(wanted), build_schedule(wanted), saved)
+    simulation = resume(build_model(wanted), build_schedule(wanted), saved)
     return Job(wanted, simulation, result)
 
 
