@@ -112,7 +112,8 @@ def _picture(content: bytes) -> dict[str, Any]:
         pixels = np.asarray(image.convert("RGBA"))
         grey = np.asarray(image.convert("L"), dtype=float)
     rows = (part.mean(axis=0) for part in np.array_split(grey, _CELLS))
-    cells = [[round(float(one.mean()), 2) for one in np.array_split(row, _CELLS)] for row in rows]
+    means = ([one.mean() for one in np.array_split(row, _CELLS)] for row in rows)
+    cells = [" ".join(f"{one:.2f}" for one in row) for row in means]
     return {"size": list(pixels.shape), "digest": _digest(pixels.tobytes()), "grey": cells}
 
 

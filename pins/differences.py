@@ -47,9 +47,8 @@ def _of_texts(before: list[str], now: list[str], place: str) -> Iterator[str]:
         for index in range(max(len(old), len(new))):
             one = old[index] if index < len(old) else None
             other = new[index] if index < len(new) else None
-            yield f"{place}, line {start + index + 1}: {_short(one)} -> {_short(other)}" + (
-                _how_far_lines(one, other) if one is not None and other is not None else ""
-            )
+            far = _how_far_lines(one, other)
+            yield f"{place}, line {start + index + 1}: {_short(one)} -> {_short(other)}{far}"
 
 
 def _is_text(value: Any) -> bool:
@@ -60,19 +59,22 @@ def _how_far(before: Any, now: Any) -> str:
     """Return how far two numbers are from each other, nothing for anything else."""
     if not all(isinstance(one, int | float) and not isinstance(one, bool) for one in (before, now)):
         return ""
-    scale = max(abs(before), abs(now))
-    return f" (relative difference {abs(now - before) / scale:.2g})" if scale else ""
+    return f" (relative difference {_apart(before, now):.2g})"
 
 
-def _how_far_lines(before: str, now: str) -> str:
+def _how_far_lines(before: str | None, now: str | None) -> str:
     """Return the largest relative difference of the numbers of two lines of the same words."""
-    if _NUMBER.sub("", before) != _NUMBER.sub("", now):
+    one, other = before or "", now or ""
+    if _NUMBER.sub("", one) != _NUMBER.sub("", other):
         return ""
-    pairs = zip(_NUMBER.findall(before), _NUMBER.findall(now), strict=True)
-    apart = [
-        abs(float(a) - float(b)) / max(abs(float(a)), abs(float(b))) for a, b in pairs if a != b
-    ]
+    pairs = zip(_NUMBER.findall(one), _NUMBER.findall(other), strict=True)
+    apart = [_apart(float(a), float(b)) for a, b in pairs if a != b]
     return f" (relative difference up to {max(apart):.2g})" if apart else ""
+
+
+def _apart(before: float, now: float) -> float:
+    scale = max(abs(before), abs(now))
+    return abs(now - before) / scale if scale else 0.0
 
 
 def _short(value: Any) -> str:

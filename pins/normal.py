@@ -14,16 +14,18 @@ _NAME = re.compile(rf"(?<![A-Za-z]){re.escape(NAME)}(?![A-Za-z])")
 _STANDS_FOR_NAME = "(name)"
 #: Wall times, versions, and digests that versions are a part of.
 _DROPPED = frozenset({"seconds", "versions", "software", "sha256"})
-_DURATION = re.compile(r"(after|took|taking|in) [\d.e+]+ (s|min|h|days)\b")
-_AT_THE_SIDE = re.compile(r"(?<=> )[\d.]+ (s|min|h)(?=<)|\([\d.]+ (s|min|h)\)")
+_DURATION = re.compile(r"after [\d.e+]+ (s|min|h|days)\b")
+#: As the report has it behind each of its commands.
+_COST = re.compile(r"# [\d.]+ s$", re.MULTILINE)
+_VERSION = re.compile(rf"(?<={re.escape(_STANDS_FOR_NAME)}) \d+(\.\d+)+")
 #: Notices that come only the first time, or hold an address.
 _PASSING = ("compiling", "dashboard")
 
 
 def steady(text: str) -> str:
     """Return a text without wall times and without the name of the command."""
-    without = _AT_THE_SIDE.sub("(time)", _DURATION.sub(r"\1 (time)", text))
-    return _NAME.sub(_STANDS_FOR_NAME, without)
+    without = _COST.sub("# (time)", _DURATION.sub("after (time)", text))
+    return _VERSION.sub(" (version)", _NAME.sub(_STANDS_FOR_NAME, without))
 
 
 def steady_value(value: Any) -> Any:

@@ -11,6 +11,7 @@ the last bit, so that both have to run on one kind of processor, with the same l
 # ruff: noqa: T201
 
 import argparse
+import hashlib
 import json
 import os
 import platform
@@ -57,17 +58,25 @@ def run(call: str, folder: Path, *, as_json: bool) -> dict[str, Any]:
     return {"exit": done.returncode, "out": out, "err": messages(done.stderr)}
 
 
-def answers(calls: list[str], inputs: dict[str, str], folder: Path, *, as_json: bool) -> Any:
-    """Return what each of some commands answered in one folder, and what they left there."""
+def answers(group: dict[str, Any], inputs: dict[str, str], folder: Path, *, as_json: bool) -> Any:
+    """Return what the commands of a group answered in one folder, and what they left there."""
     folder.mkdir(parents=True)
     for name, text in inputs.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
-    told = {call: run(call, folder, as_json=as_json) for call in calls}
+    told = {call: run(call, folder, as_json=as_json) for call in group["calls"]}
     if not as_json:
         return told
     left = {name: held for name, held in contents(folder).items() if name not in inputs}
+    if full := group.get("in_full"):
+        told = {call: one | {"out": digest_of(one["out"])} for call, one in told.items()}
+        left = {name: held if name in full else digest_of(held) for name, held in left.items()}
     return {"calls": told, "files": left}
+
+
+def digest_of(value: Any) -> str:
+    """Return the digest of a JSON value, for what is too long to keep."""
+    return hashlib.sha256(json.dumps(value).encode()).hexdigest()[:16]
 
 
 def pinned(cases: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -75,11 +84,11 @@ def pinned(cases: dict[str, Any], folder: Path) -> dict[str, Any]:
     with ThreadPoolExecutor(AT_ONCE) as pool:
         futures = {}
         for name, group in cases["groups"].items():
-            inputs = cases["inputs"].get(group.get("inputs"), {})
+            inputs = cases.get("inputs", {}).get(group.get("inputs"), {})
             for form in ("json",) if group.get("json_only") else ("json", "text"):
                 as_json, place = form == "json", folder / name / form
                 futures[f"{name} {form}"] = pool.submit(
-                    answers, group["calls"], inputs, place, as_json=as_json
+                    answers, group, inputs, place, as_json=as_json
                 )
         return {name: future.result() for name, future in sorted(futures.items())}
 
