@@ -47,7 +47,7 @@ def _files(folder: Path) -> Iterator[Path]:
         else:
             yield path
             if path.suffix == ".zarr":
-                yield from (path / name for name in ("borders.json",) if (path / name).exists())
+                yield from sorted((*path.glob("borders.json"), *path.glob("runs/*.nc")))
 
 
 def _digest(content: bytes) -> str:
