@@ -114,7 +114,7 @@ class Schedule:
         return options(
             NDF,
             model.position_mask,
-            np.where(model.position_mask == 1.0, model.unknowns(model.straight()), 0.0),
+            np.where(model.position_mask == 1.0, model.straight_unknowns(), 0.0),
             rtol=self.rtol,
             atol=self.atol,
             stale_after=STALE_AFTER,

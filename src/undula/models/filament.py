@@ -156,7 +156,7 @@ class Filament(LinkedRod):
         """
         return of_pieces(self.natural_curvature, self.segments)
 
-    @property
+    @cached_property
     def without_rotational_symmetry(self) -> bool:
         """Whether its directors matter: it is naturally curved, or bends not alike about them."""
         return self.bending_ratio != 1.0 or bool(self.piece_curvature.any())
@@ -228,7 +228,8 @@ class Filament(LinkedRod):
                 " and bending_ratio = 1, or ask for its equilibrium, its threshold onset, or a"
                 " periodic motion"
             )
-        return super(Filament, replace(self, keep_directors=False)).linearised()
+        bare = replace(self, keep_directors=False) if self.keep_directors else self
+        return super(Filament, bare).linearised()
 
     def rest(self) -> State:
         """Return the state in which nothing is bent, the equilibrium without a load."""

@@ -39,8 +39,8 @@ def numbers(given: Any, what: str) -> Array:
 
 def pieces(nodes: Nodes) -> tuple[Array, Links]:
     """Return the pieces (M, 3) between nodes (M + 1, 3) and their lengths (M,), none of them 0."""
-    along = np.diff(nodes, axis=0)
-    lengths = np.linalg.norm(along, axis=1)
+    along = nodes[1:] - nodes[:-1]
+    lengths = np.sqrt((along * along).sum(axis=1))
     # Nodes that differ by round-off alone have no direction between them either.
     none = np.flatnonzero(lengths <= 1e-12 * lengths.max(initial=0.0))
     if none.size:

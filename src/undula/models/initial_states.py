@@ -5,7 +5,10 @@ radians, whose largest value is the amplitude; the tangent is the axis turned by
 their exact length whatever the amplitude, and all starts meet the clamp.
 """
 
+from functools import lru_cache
+
 import numpy as np
+from scipy.linalg import lapack
 
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError, is_number
@@ -34,11 +37,8 @@ def kicked(model: Model, amplitude: float = 1e-2, *, seed: int = 1) -> State:
     """
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise InputError(f"seed = {seed!r} has to be a whole number, at least 0")
-    random = np.random.default_rng(seed)
-    s = _link_midpoints(model)
-    modes = np.arange(1, _KICK_MODES + 1)
-    sizes = random.normal(size=(_KICK_MODES, 2)) / modes[:, None]
-    inclination = np.sin(np.pi * (modes - 0.5) * s[:, None]) @ sizes
+    s, modes = _link_midpoints(model), np.arange(1, _KICK_MODES + 1)
+    inclination = np.sin(np.pi * (modes - 0.5) * s[:, None]) @ _kick_sizes(int(seed))
     return _inclined(model, inclination, amplitude)
 
 
@@ -84,7 +84,12 @@ def leading_mode(model: Model) -> tuple[complex, Array]:
 def leading_rate(model: Model) -> float:
     """Return the growth rate [1/T] of the leading mode: of the straight state's own links."""
     stiffness, drag = model.linearised()
-    return -float(np.linalg.eigvals(np.linalg.solve(drag, stiffness)).real.min())
+    # LAPACK itself: every run that ends straight asks, and numpy's checks take half as long again.
+    _, _, rates, failed = lapack.dgesv(drag, stiffness)
+    decay, _, _, _, unfinished = lapack.dgeev(rates, compute_vl=0, compute_vr=0)
+    if failed or unfinished:
+        raise np.linalg.LinAlgError("the spectrum of the straight state is not found")
+    return -float(decay.min())
 
 
 def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
@@ -139,6 +144,15 @@ def turned(model: Model, nodes: Nodes, amplitude: float, *, seed: int = 1) -> St
     # Rodrigues' formula with the sine in the axis; tangents are at most pi/2 from upright.
     links = links + once + np.cross(axis, once) / (1.0 + tangents[:, 2:])
     return model.from_nodes(np.concatenate([nodes[:1], np.cumsum(links, axis=0)]))
+
+
+@lru_cache(maxsize=64)
+def _kick_sizes(seed: int) -> Array:
+    """Return the random sizes (modes, 2) of the modes in a kick; they cannot be written to."""
+    modes = np.arange(1, _KICK_MODES + 1)
+    sizes = np.random.default_rng(seed).normal(size=(_KICK_MODES, 2)) / modes[:, None]
+    sizes.setflags(write=False)
+    return sizes
 
 
 def _link_midpoints(model: Model) -> Array:

@@ -84,7 +84,7 @@ class LinkedRod(ABC):
 
     def unknowns(self, x: State) -> Array:
         """Return the integrator's vector: positions and the multipliers that belong to them."""
-        return self._moving(x)[0]
+        return self.moving(x)[0]
 
     def admissible(self, x: State) -> State:
         """Return the shape of x with the lengths that its links have to have.
@@ -100,10 +100,10 @@ class LinkedRod(ABC):
 
     def rates(self, x: State) -> Array:
         """Return the rates of change of the integrator's vector and of its integrals at x."""
-        return self._moving(x)[1]
+        return self.moving(x)[1]
 
-    def _moving(self, x: State) -> tuple[Array, Array]:
-        """Return the integrator's vector at x and its rates of change."""
+    def moving(self, x: State) -> tuple[Array, Array]:
+        """Return the integrator's vector at x and its rates of change, at once."""
         y = np.zeros((self.links, self._stride))
         y[:, : self.dimension] = np.asarray(x, dtype=float).reshape(self.links, self.dimension)
         unknowns, velocity = y.ravel(), np.zeros(y.size + RATES)
@@ -112,7 +112,7 @@ class LinkedRod(ABC):
 
     def jacobian(self, x: State) -> Array:
         """Return d rhs / dx, shape (size, size), from those of R v = f and of the constraint."""
-        y, v = self._moving(x)
+        y, v = self.moving(x)
         v = v[:-RATES]
         d, m = self.dimension, self._stride
         moving = self.equations.differential
@@ -136,11 +136,8 @@ class LinkedRod(ABC):
         return change
 
     def linearised(self) -> tuple[Array, Array]:
-        """Return stiffness and drag (N, N) of small displacements across the axis.
-
-        Displacements y of the nodes in one direction obey drag y' = -stiffness y.
-        """
-        y = self._moving(self.straight())[0]
+        """Return stiffness and drag (N, N): small y across the axis obey drag y' = -stiffness y."""
+        y = self.straight_unknowns()
         stiffness, drag = self.equations.parts(y, np.zeros(y.size), 0.0)
         m = self._stride
         # Every m-th row and column belongs to the same direction; none else matters to it.
@@ -171,8 +168,9 @@ class LinkedRod(ABC):
 
     def tangent_distance(self, x: State) -> float:
         """Return the root mean square difference of the tangents from straight [rad]."""
-        away = np.reshape(x - self.straight(), (self.links, self.dimension))
-        return float(np.linalg.norm(np.diff(away, axis=0, prepend=0.0)) * np.sqrt(self.links))
+        away = np.reshape(x - self._straight, (self.links, self.dimension))
+        away[1:] -= away[:-1].copy()
+        return float(np.sqrt(np.vdot(away, away)) * np.sqrt(self.links))
 
     def energy(self, x: State) -> float:
         """Return the elastic energy."""
@@ -211,6 +209,14 @@ class LinkedRod(ABC):
     @cached_property
     def _straight(self) -> State:
         return straight(self.system)
+
+    def straight_unknowns(self) -> Array:
+        """Return the integrator's vector in the straight state."""
+        return self._straight_unknowns.copy()
+
+    @cached_property
+    def _straight_unknowns(self) -> Array:
+        return self.unknowns(self._straight)
 
     def rest(self) -> State:
         """Return the state in which nothing is bent: straight, unless the body is curved."""

@@ -98,6 +98,9 @@ class Model(Protocol):
     def straight(self) -> State:
         """Return the straight state along the axis, an equilibrium."""
 
+    def straight_unknowns(self) -> Array:
+        """Return the integrator's vector in the straight state."""
+
     def rest(self) -> State:
         """Return the state in which nothing is bent: straight, unless the body is curved."""
 
@@ -106,6 +109,9 @@ class Model(Protocol):
 
     def rates(self, x: State) -> Array:
         """Return the rates of change of the integrator's vector and of its integrals at x."""
+
+    def moving(self, x: State) -> tuple[Array, Array]:
+        """Return the integrator's vector at x and its rates of change, at once."""
 
     def rhs(self, x: State) -> State:
         """Return dx/dt."""

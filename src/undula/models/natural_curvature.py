@@ -105,7 +105,7 @@ def of_pieces(curvature: NaturalCurvature, links: int) -> Array:
         A function fails or gives values that are none.
     """
     if isinstance(curvature, tuple):
-        return np.tile(np.array(curvature), (links + 1, 1))
+        return np.full((links + 1, 2), curvature)
     ends = np.concatenate([[0.0], (np.arange(links) + 0.5) / links, [1.0]])
     middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
     s = (middle[:, None] + half[:, None] * _POINTS).ravel()

@@ -147,8 +147,8 @@ class Grounds:
         if verdict.name == STRAIGHT and self.model.axisymmetric:
             rate = leading_rate(self.model)
         else:
-            y = self.model.unknowns(self.model.straight())
-            y = self.last if verdict.name != STRAIGHT else y
+            straight = verdict.name == STRAIGHT
+            y = self.model.straight_unknowns() if straight else self.last
             rate = float(rotating_spectrum(self.model, y, 0.0)[0].real)
         return None if rate <= 0.0 else self._leaves(verdict, rate)
 
@@ -177,5 +177,5 @@ def _back(verdict: Verdict, doubt: str) -> Verdict:
 def _size(model: Model, nodes: Shapes, rest: Nodes) -> float:
     """Return the largest RMS inclination [rad] to a shape (N + 1, 3) in nodes (m, N + 1, 3)."""
     away = nodes[:: max(1, len(nodes) // LOOKS)] - rest
-    slopes = np.diff(away, axis=1) * model.links
-    return float(np.sqrt(np.max(np.sum(slopes**2, axis=(1, 2)) / model.links, initial=0.0)))
+    slopes = (away[:, 1:] - away[:, :-1]) * model.links
+    return math.sqrt((slopes * slopes).sum(axis=(1, 2)).max(initial=0.0) / model.links)

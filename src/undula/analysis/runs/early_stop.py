@@ -244,7 +244,7 @@ def motion_of(arrival: ReachedState, model: Model, last: Array) -> Motion:
     """
     if arrival.state is None:
         rows = np.zeros((2, last.size))
-        rows[:, :-RATES] = model.unknowns(model.straight())
+        rows[:, :-RATES] = model.straight_unknowns()
         rows[:, -RATES:] = last[-RATES:]
         return Motion.of(model, arrival.time - np.arange(2.0) / arrival.leading_rate, rows)
     state = arrival.state

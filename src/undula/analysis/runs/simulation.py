@@ -114,7 +114,7 @@ class Simulation:
             raise InputError(f"{shapes}; give {model.size} finite numbers")
         refuse_misfits(model.nodes(x), extensible=model.extensible)
         x = model.admissible(x)
-        unknowns, rates = model.unknowns(x), model.rates(x)
+        unknowns, rates = model.moving(x)
         speed = float(np.abs(model.positions(rates[:-RATES])).max())
         reach = schedule.atol + schedule.rtol * float(np.abs(x - model.straight()).max())
         step = reach / speed if speed > 0.0 else schedule.end * 1e-3
@@ -147,14 +147,14 @@ class Simulation:
     def advance(self) -> bool:
         """Go on for some milliseconds; return whether there is more to do."""
         last = math.ceil(self.schedule.end / self.interval - 1e-9)
-        ahead = np.arange(self.sampled, min(self.sampled + MOST_SAMPLES, self._enough(), last + 1))
-        if ahead.size == 0:
+        ahead = min(self.sampled + MOST_SAMPLES, self._enough(), last + 1)
+        if ahead <= self.sampled:
             self.apply(rules.at_the_end(self.schedule, self.observation))
             return False
         width = self.memory.differences.shape[1]
         noted = self._parts()
         parts = max(1, noted)
-        fine = np.arange(self._first(parts), ahead[-1] * parts + 1)
+        fine = np.arange(self._first(parts), (ahead - 1) * parts + 1)
         most = self.state_detector.steps if self.schedule.until == "solved" else MOST_STEPS
         states, sections = np.empty((fine.size, width)), np.empty((most, 1 + width))
         code, filled, found = advance(
@@ -226,9 +226,9 @@ class Simulation:
         return max(following, min(known, self.sampled * parts))
 
     def _enough(self) -> int:
-        """Return how many samples are enough as far as is known: those of a motion as shown."""
+        """Return how many samples are enough at a look: of what has settled, those as shown."""
         if not self.schedule.open_ended or self.observation is None:
-            return np.iinfo(np.int64).max
+            return self.sampled + MOST_SAMPLES
         until = max(self.observation.until, self.observe_until)
         return max(self.sampled, math.ceil(until / self.interval - 1e-9)) + 1
 

@@ -68,7 +68,7 @@ def spinning_start(model: Model) -> tuple[TurningShape, Point] | None:
     if pair is None:
         return None
     at = changed(model, FORCE, pair.p)
-    straight = at.unknowns(at.straight())
+    straight = at.straight_unknowns()
     mode = pair.vector / pair.vector[-1] * abs(pair.vector[-1])
     tangent = np.zeros(straight.size + 1)
     by_node = tangent[:-1].reshape(model.links, -1)

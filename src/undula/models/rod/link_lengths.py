@@ -14,8 +14,9 @@ from undula.numerics.integration.system import RATES
 def admissible(system: Any, x: State) -> State:
     """Return the shape of x with the lengths that links of a rod with these tables have to have."""
     count, dimension = system.joint.size, system.dimension
-    links = np.diff(np.reshape(x, (count, dimension)), axis=0, prepend=0.0)
-    tangents = links / np.linalg.norm(links, axis=1, keepdims=True)
+    links = np.array(x, dtype=float).reshape(count, dimension)
+    links[1:] -= links[:-1].copy()
+    tangents = links / np.sqrt((links * links).sum(axis=1, keepdims=True))
     stretch = np.ones(count)
     if system.extensible:
         stretch += _rigid_tension(system, tangents) / system.tensile
@@ -31,7 +32,9 @@ def straight(system: Any) -> State:
         The load is as large as the stiffness of extensible links.
     """
     count: int = system.joint.size
-    carried = np.cumsum((system.outer_force + np.append(system.inner_force[1:], 0.0))[::-1])[::-1]
+    loads = system.outer_force.copy()
+    loads[:-1] += system.inner_force[1:]
+    carried = loads[::-1].cumsum()[::-1]
     if not carried.max() < system.tensile:
         raise InputError(
             f"tensile_stiffness = {system.tensile:g} does not exceed the force of"
@@ -40,7 +43,7 @@ def straight(system: Any) -> State:
         )
     x = np.zeros((count, system.dimension))
     x[:, -1] = np.arange(1, count + 1) / count
-    x[:, -1] -= np.cumsum(system.link * carried / system.tensile)
+    x[:, -1] -= (system.link * carried / system.tensile).cumsum()
     return x.ravel()
 
 
