@@ -264,7 +264,7 @@ class Filament(LinkedRod):
 
         The `paper` has them dropped from the forces; they are what it would take.
         """
-        by_node = unknowns.reshape(*unknowns.shape[:-1], self.links, self._stride)
+        by_node = self.equations.layout.by_node(unknowns)
         if isinstance(self.system, DirectedRod):
             return np.asarray(by_node[..., -1])
         return np.zeros(by_node.shape[:-1])

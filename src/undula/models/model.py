@@ -1,8 +1,9 @@
-"""The contract between models and everything else: what an analysis may ask of any model.
+"""The contract between models and everything else: all that an analysis uses of a model.
 
 A state x (size,) holds the positions of the free nodes, node by node, in the coordinates in which
 the model moves: x, y, z in space, or x, z for a model that is confined to a plane. Everything is
-dimensionless. The constraint forces follow from the state and are not part of it.
+dimensionless. The constraint forces follow from the state and are not part of it. Solvers and the
+integrator use a longer vector (n,), of positions and multipliers (`undula.models.equations`).
 """
 
 from collections.abc import Callable
@@ -10,13 +11,23 @@ from dataclasses import dataclass, fields
 from typing import Any, Protocol, Self
 
 from undula.arrays import Array, Nodes, State
+from undula.models.equations import ModelEquations, System
 from undula.models.loads.analytic import DensityLoad, Load
 from undula.models.units import Units
 
 
 @dataclass(frozen=True)
 class Energetics:
-    """Energies and powers of a row of states, each of shape (m,), in the model's units."""
+    """Energies and powers of a row of states, each of shape (m,), in the model's units.
+
+    Attributes
+    ----------
+    bending_energy, stretching_energy : ndarray of shape (m,)
+    active_power : ndarray of shape (m,)
+        Power put in by the load.
+    dissipation : ndarray of shape (m,)
+        Power dissipated by the drag.
+    """
 
     bending_energy: Array
     stretching_energy: Array
@@ -24,13 +35,16 @@ class Energetics:
     dissipation: Array
 
     def part(self, chosen: slice) -> Self:
-        """Return those of some of the states."""
+        """Return those of the states of a slice."""
         values = (getattr(self, field.name)[chosen] for field in fields(self))
         return type(self)(*values)
 
 
 class Model(Protocol):
-    """A model of a clamped filament or chain, frozen."""
+    """A model of a clamped body, frozen: a filament, a chain, or several of them.
+
+    Unknowns are vectors (n,) of positions and multipliers in the model's own order.
+    """
 
     @property
     def size(self) -> int:
@@ -38,11 +52,11 @@ class Model(Protocol):
 
     @property
     def dimension(self) -> int:
-        """Coordinates of a node in a state: 3, or 2 if confined to a plane."""
+        """Coordinates of a node in a state: 3, or 2 if confined to the x-z plane."""
 
     @property
     def axisymmetric(self) -> bool:
-        """Whether no direction across the axis is singled out: all motions can be turned."""
+        """Whether a state turned about the axis is a state that moves alike."""
 
     @property
     def extensible(self) -> bool:
@@ -50,7 +64,7 @@ class Model(Protocol):
 
     @property
     def balances(self) -> bool:
-        """Whether the equations keep account of all energy: not where twist moments are dropped."""
+        """Whether active power, dissipation and energy balance: not without twist moments."""
 
     @property
     def load(self) -> Load:
@@ -58,72 +72,102 @@ class Model(Protocol):
 
     @property
     def links(self) -> int:
-        """Number of links that the model is made of."""
+        """Number of links of the model, at least 1."""
 
     @property
     def units(self) -> Units:
         """Names of the units of its numbers."""
 
     @property
-    def equations(self) -> Any:
-        """Equations for solvers of states: `undula.numerics.continuation.problem.Equations`.
-
-        They tell as well, as `turning(y)`, the velocity of a unit rate of turning and its drag.
-        """
+    def equations(self) -> ModelEquations:
+        """Equations for solvers of states."""
 
     @property
-    def system(self) -> Any:
-        """The equations as the integrator wants them, see `undula.numerics.integration.system`."""
+    def system(self) -> System:
+        """Tables for the integrator."""
 
     def unknowns(self, x: State) -> Array:
-        """Return the integrator's vector: positions and the multipliers that belong to them."""
+        """Return the unknowns (n,) of a state: positions, and the multipliers that belong to it."""
 
     def positions(self, unknowns: Array) -> State:
-        """Return the state in the integrator's vector; further axes in front are kept."""
+        """Return the states (..., size) in unknowns (..., n)."""
 
     def joint_angles(self, unknowns: Array) -> Array:
-        """Return the angles between neighbouring links (..., links) of integrator's vectors [rad].
+        """Return the angles between neighbouring links (..., links) of unknowns (..., n) [rad].
 
-        The clamp's axis is before the first. With their signs and full turns if joints wind up.
+        The first one is between the clamp's axis and the first link. Angles of unwrapped joints
+        have signs and full turns; others lie between 0 and pi.
         """
 
     @property
     def unwrapped(self) -> bool:
-        """Whether joints wind up beyond pi, instead of folding there."""
+        """Whether angles of joints grow beyond pi, instead of folding there."""
 
     @property
     def position_mask(self) -> Array:
-        """1 at the positions, 0 at the multipliers of the integrator's vector."""
+        """1 at the positions, 0 at the multipliers of the unknowns, shape (n,)."""
 
     def straight(self) -> State:
-        """Return the straight state along the axis, an equilibrium."""
+        """Return the straight state along the axis, an equilibrium.
+
+        Raises
+        ------
+        InputError
+            The load is as large as the stiffness of extensible links.
+        """
 
     def straight_unknowns(self) -> Array:
         """Return the integrator's vector in the straight state."""
 
     def rest(self) -> State:
-        """Return the state in which nothing is bent: straight, unless the body is curved."""
+        """Return the state in which nothing is bent: straight without natural curvature."""
 
     def admissible(self, x: State) -> State:
         """Return the state near x that meets the model's constraints to round-off."""
 
     def rates(self, x: State) -> Array:
-        """Return the rates of change of the integrator's vector and of its integrals at x."""
+        """Return the rates of change of the unknowns and of the integrals with them, at x.
+
+        Returns
+        -------
+        ndarray of shape (n + 3,)
+            The last ones are the rate of turning [rad/T], the active power and the dissipation.
+        """
 
     def moving(self, x: State) -> tuple[Array, Array]:
         """Return the integrator's vector at x and its rates of change, at once."""
 
     def rhs(self, x: State) -> State:
-        """Return dx/dt."""
+        """Return dx/dt, shape (size,) [L/T]."""
 
     def jacobian(self, x: State) -> Array:
         """Return d rhs / dx, shape (size, size), exact."""
 
     def linearised(self) -> tuple[Array, Array]:
-        """Return stiffness and drag (links, links) of small displacements across the axis.
+        """Return stiffness and drag of small displacements of the straight state across the axis.
 
-        Displacements y of the nodes in one direction obey drag y' = -stiffness y; the other
-        direction, if there is one, obeys the same and does not know of the first.
+        Displacements y of the nodes in one direction obey drag y' = -stiffness y. Those in the
+        other direction obey the same equation, independently.
+
+        Returns
+        -------
+        tuple of ndarray, each of shape (links, links)
+
+        Raises
+        ------
+        InputError
+            The straight state is no equilibrium.
+        """
+
+    def displaced(self, along_x: Array, along_y: Array | None = None) -> State:
+        """Return the change of a state at small displacements across the axis.
+
+        Parameters
+        ----------
+        along_x : ndarray of shape (links,)
+            Displacements of the nodes along x, in the order of `linearised` [L].
+        along_y : ndarray of shape (links,), optional
+            Displacements along y, for models in space.
         """
 
     @property
@@ -134,7 +178,7 @@ class Model(Protocol):
         """Return the same body made of another number of links; None if its links are the body."""
 
     def tangent_distance(self, x: State) -> float:
-        """Return how far x is from straight, in the norm in which the integrator measures."""
+        """Return the distance of x from straight, in the norm in which the integrator measures."""
 
     def energy(self, x: State) -> float:
         """Return the elastic energy."""
@@ -143,28 +187,52 @@ class Model(Protocol):
         """Return the power put in by the load and the power dissipated."""
 
     def observe(self, unknowns: Array) -> Energetics:
-        """Return energies and powers of rows of the integrator's vector, shape (m, n)."""
+        """Return energies and powers of unknowns (m, n)."""
 
     def energies(self, unknowns: Array) -> tuple[Array, Array]:
-        """Return the energies of bending and of stretching alone, each (m,): this is quick."""
+        """Return the energies of bending and of stretching of unknowns (m, n), each (m,)."""
 
     def nodes(self, x: State) -> Nodes:
-        """Return the positions of all nodes in space, base first; axes in front are kept."""
+        """Return the nodes (..., links + 1, 3) of states (..., size), base first [L]."""
 
     def from_nodes(self, nodes: Nodes) -> State:
-        """Return the state whose nodes these are."""
+        """Return the state with these nodes (links + 1, 3) [L].
+
+        Raises
+        ------
+        InputError
+            The nodes have another shape, or are not finite.
+        """
 
     def rotate(self, x: State, angle: float) -> State:
-        """Return the state turned about the axis; a model without that symmetry refuses."""
+        """Return the state turned about the axis by an angle [rad].
+
+        Raises
+        ------
+        InputError
+            The model is confined to a plane, or not axisymmetric.
+        """
 
     def rotation_generator(self, x: State) -> State:
-        """Return the velocity of a unit rate of rotation about the axis; 0 if it is no symmetry."""
+        """Return the velocity of a unit rate of turning; 0 for models that are not turned."""
 
     def reflect(self, x: State) -> State:
-        """Return the state reflected in a plane through the axis (x to -x)."""
+        """Return the state reflected in the plane x = 0.
+
+        Raises
+        ------
+        InputError
+            The model has no mirror symmetry.
+        """
 
     def with_(self, **changes: Any) -> Self:
-        """Return the model with other values of its own fields or of its load's."""
+        """Return the model with other values of its own fields or of its load's.
+
+        Raises
+        ------
+        InputError
+            Neither has such a field, or a value is out of its range.
+        """
 
 
 #: A start makes a state for a model.

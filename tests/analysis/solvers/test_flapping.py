@@ -13,7 +13,6 @@ from undula.analysis.solvers.flapping import (
     find_flapping,
     flapping_family,
     flapping_unknowns,
-    in_space,
 )
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.states.records import Flapping, NotFound, Spinning
@@ -182,9 +181,9 @@ def test_what_happens_in_the_plane_does_not_depend_on_the_space_around_it(case: 
 def test_the_parts_in_and_out_of_the_plane_are_those_of_the_flow_in_space(case: str) -> None:
     state, shot = state_of(case), shot_of(state_of(case))
     equations = state.model.equations
-    y = in_space(shot.y)
+    y = equations.from_plane(shot.y)
     basis = equations.displacements(y)
-    stages, method = in_space(shot.flow.stages), flapping.METHOD
+    stages, method = equations.from_plane(shot.flow.stages), flapping.METHOD
     change = linearised_flow(equations, y, stages, shot.duration, basis, (), method)
     assert change is not None
     mirror = np.tile([-1.0, 1.0, 1.0, 1.0], state.model.links)

@@ -130,8 +130,8 @@ def flapping_start(model: Model) -> tuple[OrbitProblem, Point] | None:
         return None
     straight = changed(flat, FORCE, pair.p).straight()
     mode = pair.vector / pair.vector[-1]
-    velocity, tangent = np.zeros(straight.size), np.zeros(straight.size + 1)
-    tangent[:-1:2], velocity[::2] = mode.real, -pair.omega * mode.imag
+    velocity = flat.displaced(-pair.omega * mode.imag)
+    tangent = np.append(flat.displaced(mode.real), 0.0)
     half = np.pi / pair.omega
     reference = Reference(straight, velocity, np.zeros(straight.size), half)
     problem = OrbitProblem(_shooting(model, FORCE), reference)
@@ -235,7 +235,9 @@ def _judged(model: Model, orbit: Orbit) -> Flapping:
     if model.dimension == 3:
         # A small turn about the axis moves the nodes across the plane by their deflection, which
         # half a beat later is reversed.
-        out_of_plane, turn = _exponents(_across(model, orbit), shot.y[::3], -1.0, half)
+        deflection = model.equations.turning(model.equations.from_plane(shot.y))[0]
+        across = deflection[model.equations.across]
+        out_of_plane, turn = _exponents(_across(model, orbit), across, -1.0, half)
         trivial.append(turn)
     ends = shot.flow.stages[:, -1]
     return Flapping(
@@ -252,24 +254,16 @@ def _judged(model: Model, orbit: Orbit) -> Flapping:
 
 
 def _across(model: Model, orbit: Orbit) -> Array:
-    """Return what becomes of displacements (N,) out of the plane in half a beat, shape (N, N)."""
-    shot = orbit.shot
-    links = model.links
-    columns = np.zeros((4 * links, links))
-    columns[1::4] = np.eye(links)
-    stages = in_space(shot.flow.stages)
-    start, method = in_space(shot.y), orbit.problem.shooting.method
-    change = linearised_flow(model.equations, start, stages, shot.duration, columns, (), method)
+    """Return the map (k, k) of displacements out of the plane over half a beat."""
+    shot, equations = orbit.shot, model.equations
+    rows = np.flatnonzero(equations.across)
+    columns = np.zeros((equations.across.size, rows.size))
+    columns[rows, np.arange(rows.size)] = 1.0
+    stages, start = equations.from_plane(shot.flow.stages), equations.from_plane(shot.y)
+    method = orbit.problem.shooting.method
+    change = linearised_flow(equations, start, stages, shot.duration, columns, (), method)
     assert change is not None  # the stages solve equations that are regular in the plane
-    return change.by_start[1::4]
-
-
-def in_space(y: Array) -> Array:
-    """Return vectors (..., 3 N) of the planar equations as those (..., 4 N) in space."""
-    by_node = y.reshape(*y.shape[:-1], -1, 3)
-    whole = np.zeros((*by_node.shape[:-1], 4))
-    whole[..., [0, 2, 3]] = by_node
-    return whole.reshape(*y.shape[:-1], -1)
+    return change.by_start[rows]
 
 
 def _exponents(

@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from undula.analysis.parameters import FORCE, changed, value_of
-from undula.analysis.solvers.flapping import INTERVALS, METHOD, flapping_unknowns, in_space
+from undula.analysis.solvers.flapping import INTERVALS, METHOD, flapping_unknowns
 from undula.analysis.solvers.symmetry import require_space
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.follow_branch import Family, Progress, UnresolvedError, follow_branch
@@ -110,7 +110,8 @@ def _dies(bifurcation: Bifurcation[Periodic]) -> bool:
 def _in_space(state: Flapping) -> Array:
     """Return half a beat as a motion in space that has turned by pi."""
     planar = flapping_unknowns(state)
-    x = in_space(state.unknowns[-1])[state.model.equations.differential]
+    equations = state.model.equations
+    x = equations.from_plane(state.unknowns[-1])[equations.differential]
     return np.concatenate([x, [planar[-1], np.pi]])
 
 
@@ -125,19 +126,15 @@ def _null_vector(problem: OrbitProblem, u: Array, p: float) -> Array:
 def periodic_shooting(model: Model, parameter: str, intervals: int) -> Shooting:
     """Return how to shoot from a start over a period of so many intervals, along a parameter."""
 
-    def rotate(y: Array, angle: float) -> Array:
-        turned = y.reshape(-1, model.equations.stride).copy()
-        cosine, sine = np.cos(angle), np.sin(angle)
-        turned[:, :2] = turned[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
-        return turned.ravel()
+    equations = model.equations
 
     def generator(y: Array) -> Array:
-        velocity: Array = model.equations.turning(np.ascontiguousarray(y))[0]
-        return velocity
+        return equations.turning(np.ascontiguousarray(y))[0]
 
+    turns = Rotation(equations.rotated, generator) if model.axisymmetric else None
     return Shooting(
         equations_at=lambda p: changed(model, parameter, p).equations,
-        closure=OrbitSymmetry(rotation=Rotation(rotate, generator) if model.axisymmetric else None),
+        closure=OrbitSymmetry(rotation=turns),
         intervals=intervals,
         method=METHOD,
     )

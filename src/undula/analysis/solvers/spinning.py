@@ -71,8 +71,7 @@ def spinning_start(model: Model) -> tuple[TurningShape, Point] | None:
     straight = at.straight_unknowns()
     mode = pair.vector / pair.vector[-1] * abs(pair.vector[-1])
     tangent = np.zeros(straight.size + 1)
-    by_node = tangent[:-1].reshape(model.links, -1)
-    by_node[:, 0], by_node[:, 1] = mode.real, mode.imag
+    tangent[:-1][at.equations.differential] = at.displaced(mode.real, mode.imag)
     problem = TurningShape(model, FORCE, tangent[:-1].copy(), pair.omega)
     tangent /= np.sqrt(problem.weights @ tangent**2)
     return problem, Point(np.append(straight, pair.omega), pair.p, tangent, 0.0)

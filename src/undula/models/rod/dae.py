@@ -1,7 +1,7 @@
 """The linked rod as a differential equation with constraints, for solvers of states.
 
-It implements `undula.numerics.continuation.problem.Equations` on top of the compiled residual and
-its exact derivative.
+It implements `undula.models.equations.ModelEquations` on top of the compiled residual and its exact
+derivative.
 """
 
 from dataclasses import dataclass
@@ -14,6 +14,7 @@ from undula.arrays import Array
 from undula.errors import InputError
 from undula.jit.borrowed import borrowed
 from undula.jit.compilation import entry
+from undula.models.rod.layout import Layout
 from undula.models.rod.newton_matrix import exact_derivative
 from undula.models.rod.sizes import belongs
 from undula.models.rod.tables import DirectedRod, Rod
@@ -33,7 +34,7 @@ def balance(system: Any, y: Any, w: Any, out: Any) -> None:
 
 @entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(borrowed(system), n))
 def turning(system: Any, y: Any, out: Any, dragged: Any) -> None:
-    """Write S x and R(x) S x, for the velocity of a unit rate of turning, to out and dragged."""
+    """Write S x, the velocity of a unit rate of turning, to out, and R(x) S x to dragged."""
     generator(system, y, out)
     apply_drag(system, y, out, dragged)
 
@@ -49,16 +50,21 @@ class RodFlow:
         """Half-bandwidth of the matrices."""
         return derivative_half_bandwidth(type(self.system))
 
-    @property
-    def stride(self) -> int:
-        """Entries of y that belong to a node: its coordinates, then its multipliers."""
-        return int(self.system.stride)
-
     @cached_property
+    def layout(self) -> Layout:
+        """Places of positions and multipliers in y."""
+        rod = self.system
+        return Layout(rod.joint.size, int(rod.dimension), int(rod.stride))
+
+    @property
     def differential(self) -> Any:
         """True at positions, False at multipliers, shape (n,)."""
-        entries = np.arange(self.system.joint.size * self.stride)
-        return entries % self.stride < self.system.dimension
+        return self.layout.differential
+
+    @property
+    def across(self) -> Any:
+        """True at the positions y that a state in the x-z plane has at 0, shape (n,)."""
+        return self.layout.across
 
     def residual(self, y: Array, w: Array) -> Array:
         """Return R(x) w - f(x, z) and g(x, z), shape (n,), for velocities w (n,)."""
@@ -72,7 +78,7 @@ class RodFlow:
         drag, d = np.empty_like(whole), int(self.system.dimension)
         exact_derivative(self.system, y, w, 1.0, turn, whole)
         exact_derivative(self.system, y, np.zeros(y.size), 0.0, 0.0, drag)
-        drag.reshape(-1, self.stride, drag.shape[1])[:, d:] = 0.0
+        drag.reshape(-1, self.layout.stride, drag.shape[1])[:, d:] = 0.0
         whole -= drag
         return whole, drag
 
@@ -82,12 +88,28 @@ class RodFlow:
         turning(self.system, y, out, dragged)
         return out, dragged
 
+    def rotated(self, y: Array, angle: float) -> Array:
+        """Return a vector (n,) of links in space turned about the axis by an angle [rad]."""
+        return self.layout.rotated(y, angle)
+
+    def from_plane(self, y: Array) -> Array:
+        """Return vectors of the same links confined to the x-z plane as vectors (..., n) of these.
+
+        Both kinds of links have their positions and tensions alone; confined ones do not unwrap.
+        """
+        return self.layout.from_plane(y)
+
     def mirrored(self, y: Array) -> Array:
-        """Return vectors (..., n) with x reflected, and with it the sense of angles that wind.
+        """Return vectors (..., n) with x reflected, and with it the sense of unwrapped angles.
 
         A first director that stands on the mirror at the clamp becomes the opposite of its image.
+
+        Raises
+        ------
+        InputError
+            Natural curvature about the second director leaves no mirror symmetry.
         """
-        signs = np.ones(self.stride)
+        signs = np.ones(self.layout.stride)
         signs[0] = -1.0
         signs[self.system.dimension + 1 :] = -1.0
         if isinstance(self.system, DirectedRod):
@@ -101,7 +123,7 @@ class RodFlow:
 
     def displacements(self, y: Array) -> Array:
         """Return an orthonormal basis (n, k) of small displacements that keep rigid lengths."""
-        moves, d, m = self.differential, int(self.system.dimension), self.stride
+        moves, d, m = self.differential, int(self.system.dimension), self.layout.stride
         if self.system.extensible:
             return np.eye(y.size)[:, moves]
         links = np.diff(y.reshape(-1, m)[:, :d], axis=0, prepend=0.0)
