@@ -26,16 +26,17 @@ if TYPE_CHECKING:
     from undula.analysis.runs.dataset import dataset_of
     from undula.analysis.runs.integrate import integrate
     from undula.analysis.runs.run import Run
+    from undula.analysis.solvers.branches import follow, follow_from_onset
     from undula.analysis.solvers.criticality import criticality
-    from undula.analysis.solvers.equilibrium import Equilibrium, find_equilibrium
+    from undula.analysis.solvers.equilibrium import find_equilibrium
     from undula.analysis.solvers.flapping import find_flapping
     from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
     from undula.analysis.solvers.periodic_search import find_periodic
     from undula.analysis.solvers.spinning import find_spinning
-    from undula.analysis.solvers.state_kinds import extrapolate, follow, follow_from_onset
+    from undula.analysis.solvers.state_kinds import extrapolate
     from undula.analysis.solvers.thresholds import threshold, threshold_curve
     from undula.analysis.states.periodic_record import Periodic
-    from undula.analysis.states.records import Flapping, Spinning
+    from undula.analysis.states.records import Equilibrium, Flapping, Spinning
     from undula.errors import InputError
     from undula.models.chain import Chain
     from undula.models.filament import Filament
@@ -54,7 +55,7 @@ _HOMES = {
     "BeadLoad": "undula.models.loads.beads",
     "Chain": "undula.models.chain",
     "CurvatureTable": "undula.models.natural_curvature",
-    "Equilibrium": "undula.analysis.solvers.equilibrium",
+    "Equilibrium": "undula.analysis.states.records",
     "Filament": "undula.models.filament",
     "Flapping": "undula.analysis.states.records",
     "InputError": "undula.errors",
@@ -81,9 +82,9 @@ _HOMES = {
     "find_flapping": "undula.analysis.solvers.flapping",
     "find_periodic": "undula.analysis.solvers.periodic_search",
     "find_spinning": "undula.analysis.solvers.spinning",
-    "follow": "undula.analysis.solvers.state_kinds",
+    "follow": "undula.analysis.solvers.branches",
     "follow_from_bifurcation": "undula.analysis.solvers.periodic_orbits",
-    "follow_from_onset": "undula.analysis.solvers.state_kinds",
+    "follow_from_onset": "undula.analysis.solvers.branches",
     "from_state": "undula.models.initial_states",
     "growth_curve": "undula.analysis.linear.stability",
     "helix": "undula.models.initial_states",

@@ -114,7 +114,7 @@ def test_flapping_is_answered_with_what_python_computes(ask: Ask) -> None:
     for key in ("frequency", "leading_rate", "leading_rate_in_plane", "leading_rate_out_of_plane"):
         assert found[key] == getattr(state, key), key
     for key, values in (
-        ("bending_energy", state.energy),
+        ("bending_energy", state.bending_energy),
         ("tip_radius", state.tip_radius),
         ("tip_height", state.tip_height),
     ):

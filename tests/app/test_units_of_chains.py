@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 import undula as un
 from refusal import complaint
 from undula.analysis.states.branch import Branch
-from undula.analysis.states.records import NotFound, Spinning
+from undula.analysis.states.not_found import NotFound
+from undula.analysis.states.records import Spinning
 from undula.app.cli import main
 from undula.storage.run_file import load_result
 from undula.views import (

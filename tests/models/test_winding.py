@@ -300,7 +300,7 @@ def test_below_pi_the_beat_is_that_of_either_spring() -> None:
     error = winding.time_error + folding.time_error
     assert winding.frequency == pytest.approx(folding.frequency, abs=error)
     # 64 instants a beat leave 2e-5 of the energy between them.
-    assert winding.energy.max == pytest.approx(folding.energy.max, rel=5e-5)
+    assert winding.bending_energy.max == pytest.approx(folding.bending_energy.max, rel=5e-5)
     np.testing.assert_allclose(winding.in_plane, folding.in_plane, rtol=1e-5)
 
 
@@ -315,7 +315,7 @@ def test_a_beat_is_followed_beyond_pi() -> None:
     period = period_of(run.motion.time, psi_of_run[:, 0])[0]
     # The steps of half a beat, which the trivial multiplier tells of.
     assert state.period == pytest.approx(period, rel=max(1e-5, *state.trivial))
-    assert state.energy.max == pytest.approx(late.energetics.bending_energy.max(), rel=1e-2)
+    assert state.bending_energy.max == pytest.approx(late.energetics.bending_energy.max(), rel=1e-2)
 
 
 def test_a_beat_is_found_again_from_where_its_springs_are_wound() -> None:

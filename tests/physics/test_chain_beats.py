@@ -6,7 +6,7 @@ import pytest
 import undula as un
 from planar_chain import beat, rate_out_of_plane
 from undula.analysis.states.branch import Branch
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound
 from undula.arrays import Array
 from undula.models.chain import Chain
 from undula.models.loads.analytic import TipLoad
@@ -31,8 +31,8 @@ def test_beats_are_those_of_the_angles_by_scipy(links: int, force: float) -> Non
     # What scipy's tolerance of 1e-11 leaves, besides the stated error.
     assert abs(state.frequency - expected.frequency) < 2.0 * state.time_error + 1e-10
     # A range over 64 instants of a bend that is sharp for a moment.
-    assert state.energy.min == pytest.approx(expected.low, rel=1e-3)
-    assert state.energy.max == pytest.approx(expected.high, rel=1e-3)
+    assert state.bending_energy.min == pytest.approx(expected.low, rel=1e-3)
+    assert state.bending_energy.max == pytest.approx(expected.high, rel=1e-3)
     out_of_plane = rate_out_of_plane(links, force, expected)
     # Out of the plane a joint stiffens by psi / sin psi, 10 at 11 K/L, for a moment that few of the
     # steps of half a beat see.

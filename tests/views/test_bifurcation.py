@@ -29,7 +29,7 @@ class Known:
     """A state that is only its figures."""
 
     frequency: float
-    energy: Range
+    bending_energy: Range
     exponents: np.ndarray
 
     @property

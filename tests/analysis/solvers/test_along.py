@@ -12,10 +12,10 @@ from refusal import complaint
 from undula.analysis.linear.straight_branch import follow_straight
 from undula.analysis.parameters import changed, value_of
 from undula.analysis.ramps.ramp import Ramp
-from undula.analysis.solvers import state_kinds as kinds
+from undula.analysis.solvers import branches
+from undula.analysis.solvers.branches import follow
 from undula.analysis.solvers.equilibrium import find_equilibrium
 from undula.analysis.solvers.spinning import find_spinning
-from undula.analysis.solvers.state_kinds import KINDS, follow
 from undula.analysis.solvers.thresholds import threshold_curve
 from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import TurningShape
@@ -126,8 +126,8 @@ def test_what_is_no_state_of_a_held_body_is_refused_before_anything_runs(
     def never(*_: Any) -> Any:
         raise AssertionError("something ran")
 
-    for module in (following, kinds):
-        monkeypatch.setattr(module, "kind_of", lambda name: KINDS[name].__class__(*[never] * 6))
+    for module in (following, branches):
+        monkeypatch.setattr(module, "kind_by_name", lambda _: Kind(*[never] * 5))
     told = complaint(
         lambda: follow_along(
             BODIES["tip"], kind, Way(parameter, start, end), converge=False, title=""
@@ -147,11 +147,11 @@ def test_an_equilibrium_is_the_same_on_a_branch_as_by_itself(
     alone = changed(BODIES["tip"], parameter, end)
     if alone.axisymmetric:
         # A shape at rest without curvature is straight.
-        assert branch.states[-1].tip_radius < 1e-12
+        assert branch.states[-1].tip_radius.max < 1e-12
     else:
         found = find_equilibrium(alone)
         # Newton's method leaves round-off of both.
-        assert branch.states[-1].tip_radius == pytest.approx(found.tip_radius, abs=1e-9)
+        assert branch.states[-1].tip_radius.mean == pytest.approx(found.tip_radius.mean, abs=1e-9)
         assert branch.states[-1].leading_rate == pytest.approx(found.leading_rate, rel=1e-6)
 
 

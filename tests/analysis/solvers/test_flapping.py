@@ -15,7 +15,8 @@ from undula.analysis.solvers.flapping import (
     flapping_unknowns,
 )
 from undula.analysis.solvers.spinning import find_spinning
-from undula.analysis.states.records import Flapping, NotFound, Spinning
+from undula.analysis.states.not_found import NotFound
+from undula.analysis.states.records import Flapping, Spinning
 from undula.arrays import Array
 from undula.models.model import Model
 from undula.numerics.orbits.flow import RADAU_5, flow, linearised_flow
@@ -113,7 +114,7 @@ def test_a_run_in_the_plane_settles_to_the_beat(case: str) -> None:
     assert abs(run.frequency.value) == pytest.approx(state.frequency, abs=error)
     motion = run.motion
     # 64 instants of the sharpest beat, the point load's, leave 2e-5 of its energy between them.
-    agree(state.energy, motion.energetics.bending_energy[1:], 5e-5)
+    agree(state.bending_energy, motion.energetics.bending_energy[1:], 5e-5)
     # And 2e-6 of its lowest tip, more or less by where in the beat they lie.
     agree(state.tip_height, tip_height(motion.nodes)[1:], 4e-6)
     sideways = motion.nodes[1:, -1, 0]
@@ -246,7 +247,7 @@ def test_nothing_a_run_and_other_links_lead_to_the_same_beat() -> None:
         state = found(find_flapping(EIGHT, guess))
         # Newton's method takes each to round-off, wherever on the orbit it begins.
         assert state.frequency == pytest.approx(alone.frequency, rel=2e-7)
-        assert state.energy.mean == pytest.approx(alone.energy.mean, rel=1e-5)
+        assert state.bending_energy.mean == pytest.approx(alone.bending_energy.mean, rel=1e-5)
     assert finer.model.links == 12
     assert finer.frequency == pytest.approx(found(find_flapping(finer.model)).frequency, rel=2e-7)
 

@@ -6,15 +6,16 @@ import pytest
 from refusal import complaint
 from undula.analysis.runs.integrate import integrate
 from undula.analysis.runs.run import Run
+from undula.analysis.solvers.branches import follow_from_onset
 from undula.analysis.solvers.criticality import Criticality, criticality
 from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
 from undula.analysis.solvers.periodic_search import find_periodic
 from undula.analysis.solvers.spinning import find_spinning
-from undula.analysis.solvers.state_kinds import follow_from_onset
 from undula.analysis.solvers.thresholds import Threshold, threshold
 from undula.analysis.states.branch import Bifurcation
+from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
-from undula.analysis.states.records import Flapping, NotFound
+from undula.analysis.states.records import Flapping
 from undula.models.filament import Filament
 from undula.models.initial_states import from_state, kicked
 from undula.models.loads.analytic import LinearLoad, PointLoad, TipLoad
@@ -57,7 +58,7 @@ def test_the_state_comes_back_turned_by_its_angle(settled: Run) -> None:
     state = find_periodic(STRONG, settled)
     assert isinstance(state, Periodic)
     start = STRONG.rotate(STRONG.positions(state.unknowns[-1]), -state.angle)
-    run = integrate(STRONG, start, until=state.duration, samples=2, rtol=1e-9)
+    run = integrate(STRONG, start, until=state.period, samples=2, rtol=1e-9)
     there = STRONG.from_nodes(run.motion.nodes[-1])
     # The period's own error by the steps in time, times the speed of the tip, some 1e3.
     assert np.abs(there - STRONG.positions(state.unknowns[-1])).max() < 1e-4

@@ -15,7 +15,7 @@ from undula.analysis.observables.alignment import aligned_distance
 from undula.analysis.regimes.recurrence import recurrence
 from undula.analysis.solvers.periodic_guesses import Seen
 from undula.analysis.solvers.periodic_search import reached
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound
 
 THREE = un.Chain(3, un.TipLoad(100.0))
 WINDMILL = ["--set", "model.kind=chain", "--set", "model.links=3", "--set", "load.force=100"]
@@ -37,7 +37,7 @@ def check(state: un.Periodic, run: un.Run) -> None:
     back = recurrence(run.shown.time, run.shown.nodes)
     assert back is not None
     # The shape comes back to 1e-5 of the displacement, from one sample in fifty to another.
-    assert state.duration == pytest.approx(back.period, rel=1e-4)
+    assert state.period == pytest.approx(back.period, rel=1e-4)
     assert state.stable
     assert run.frequency is not None
     # The frequencies are those of the same line; the steps of the run leave 1e-6 of it.
@@ -66,7 +66,7 @@ def test_every_way_to_give_a_run_leads_to_the_same_motion(settled: un.Run) -> No
     # Without one the run is that of the default start, which is the same.
     assert found(un.find_periodic(THREE)).frequency == state.frequency
     again = found(un.find_periodic(THREE, state))
-    assert again.duration == pytest.approx(state.duration, rel=1e-9)
+    assert again.period == pytest.approx(state.period, rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", [2, 5])
@@ -77,10 +77,10 @@ def test_the_motion_found_for_a_seed_is_that_of_the_run_from_it(seed: int) -> No
 
 def test_an_answer_states_how_far_its_steps_in_time_leave_it(settled: un.Run) -> None:
     state = found(un.find_periodic(settled))
-    finer = un.integrate(THREE, state.start, until=5.0 * state.duration, rtol=1e-9, samples=6)
+    finer = un.integrate(THREE, state.start, until=5.0 * state.period, rtol=1e-9, samples=6)
     apart = np.abs(finer.motion.nodes[-1] - finer.motion.nodes[0]).max()
     # Off by so much of a period after five of them, at a tip's speed of some 2 pi L a turn.
-    allowed = 5.0 * 10.0 * state.time_error * state.duration * 2.0 * np.pi * 0.6
+    allowed = 5.0 * 10.0 * state.time_error * state.period * 2.0 * np.pi * 0.6
     assert apart < max(allowed, 1e-5)
     assert 0.0 < state.time_error < 1e-5
 

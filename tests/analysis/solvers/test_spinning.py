@@ -13,10 +13,12 @@ from scipy.signal import argrelmax
 import undula
 from cases import filament, random_state
 from refusal import complaint
+from undula.analysis.solvers.branches import follow
 from undula.analysis.solvers.spinning import FORCE, find_spinning
-from undula.analysis.solvers.state_kinds import extrapolate, follow
+from undula.analysis.solvers.state_kinds import extrapolate
 from undula.analysis.solvers.thresholds import threshold
-from undula.analysis.states.records import NotFound, Spinning
+from undula.analysis.states.not_found import NotFound
+from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import TurningShape
 from undula.arrays import Array
 from undula.models.filament import Filament
@@ -74,10 +76,12 @@ def test_a_spinning_state_turns_as_the_equations_of_motion_say(model: Filament) 
     assert state.power_balance_error < 1e-9
     assert state.force == model.load.force
     assert state.frequency == pytest.approx(abs(state.rate) / (2.0 * np.pi), rel=1e-15)
-    assert state.energy.min == state.energy.max == state.bending_energy
+    assert state.period == pytest.approx(1.0 / state.frequency, rel=1e-15)
+    energy, radius, height = state.bending_energy, state.tip_radius, state.tip_height
+    assert all(values.min == values.max == values.mean for values in (energy, radius, height))
     tip = state.nodes[-1]
-    assert state.tip_radius == pytest.approx(np.hypot(tip[0], tip[1]), rel=1e-14)
-    assert state.tip_height == tip[2]
+    assert radius.mean == pytest.approx(np.hypot(tip[0], tip[1]), rel=1e-14)
+    assert height.mean == tip[2]
 
 
 def problem_of(state: Spinning) -> TurningShape:
@@ -245,7 +249,7 @@ def test_a_branch_followed_down_ends_at_the_hopf_point(to: float) -> None:
     assert branch.values[-1] == pytest.approx(onset.force, rel=1e-6)
     assert branch.states[-1].frequency == pytest.approx(onset.frequency, rel=1e-6)
     assert branch.bifurcations == ()
-    radii = [state.tip_radius for state in branch.states]
+    radii = [state.tip_radius.mean for state in branch.states]
     assert 0.0 < radii[-1] < 1e-3
     # Near its beginning the amplitude is the square root of the distance from the Hopf force.
     near = (np.array(radii) < 0.1) & (np.array(radii) > 1e-3)
@@ -313,8 +317,9 @@ def test_a_run_settles_to_the_state_that_is_solved_for(model: Filament) -> None:
     assert abs(abs(run.frequency.value) - state.frequency) <= run.frequency.error
     # What the run may still change by, in the displacement, and the errors of its steps; energy
     # goes with their square.
-    left = 2.0 * (run.settled.remaining + run.schedule.rtol) * state.bending_energy
-    assert run.window.energetics.bending_energy[-1] == pytest.approx(state.bending_energy, abs=left)
+    energy = state.bending_energy.mean
+    left = 2.0 * (run.settled.remaining + run.schedule.rtol) * energy
+    assert run.window.energetics.bending_energy[-1] == pytest.approx(energy, abs=left)
     assert_same(replace(found_from(model, run), rate=state.rate), state)
 
 
@@ -327,7 +332,7 @@ def envelope_rate(model: Filament, state: Spinning, seed: int) -> float:
     start = model.admissible(model.positions(disturbed))
     run = undula.integrate(model, start, until=0.2, rtol=1e-9)
     time = run.motion.time
-    swing = np.abs(run.motion.energetics.bending_energy - state.bending_energy)
+    swing = np.abs(run.motion.energetics.bending_energy - state.bending_energy.mean)
     # The others have died out by then: their rates are beyond 700.
     peaks = argrelmax(swing)[0]
     peaks = peaks[time[peaks] > 0.03]

@@ -12,7 +12,8 @@ from undula.analysis.solvers.refind import limit_of, refind_bifurcation
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.thresholds import THRESHOLDS, Threshold, threshold, threshold_curve
 from undula.analysis.states.extrapolation import extrapolated
-from undula.analysis.states.records import Flapping, NotFound, Spinning
+from undula.analysis.states.not_found import NotFound
+from undula.analysis.states.records import Flapping, Spinning
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 CONFINED = EIGHT.with_(confined=True)

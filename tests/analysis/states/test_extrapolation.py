@@ -13,7 +13,8 @@ from refusal import complaint
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.state_kinds import extrapolate, with_error
 from undula.analysis.states.extrapolation import Converged, converge, extrapolated
-from undula.analysis.states.records import NotFound, Spinning
+from undula.analysis.states.not_found import NotFound, SearchStatus
+from undula.analysis.states.records import Spinning
 from undula.models.filament import Filament
 from undula.models.loads.analytic import LinearLoad, Load, TipLoad
 
@@ -102,7 +103,7 @@ def test_more_links_are_asked_for_where_the_answer_is_not_good_yet() -> None:
 
 
 def test_a_search_that_finds_nothing_is_passed_on() -> None:
-    nothing = NotFound("there is nothing")
+    nothing = NotFound(SearchStatus.ABSENT, "there is nothing")
 
     def solve(model: Body, coarser: int | None) -> int | NotFound:  # noqa: ARG001
         return nothing if model.links > 10 else model.links

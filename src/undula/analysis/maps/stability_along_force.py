@@ -18,7 +18,8 @@ from undula.analysis.observables.shapes import Range
 from undula.analysis.parameters import FORCE
 from undula.analysis.solvers.flapping import flapping_family, flapping_unknowns
 from undula.analysis.solvers.state_kinds import kind_by_name
-from undula.analysis.states.records import Flapping, NotFound, Spinning
+from undula.analysis.states.not_found import NotFound
+from undula.analysis.states.records import Flapping, Spinning
 from undula.arrays import Shapes
 from undula.models.model import Model
 from undula.numerics.orbits.periodic_orbit import OrbitProblem, orbit_at, time_error
@@ -143,13 +144,18 @@ def _moving(state: Spinning | Flapping | None) -> dict[str, float]:
     if isinstance(state, Flapping):
         error = state.time_error if np.isfinite(state.time_error) else _time_error(state)
         return _quantities(
-            state.leading_rate, (state.frequency, error), state.energy, state.tip_radius, 0.0
+            state.leading_rate,
+            (state.frequency, error),
+            state.bending_energy,
+            state.tip_radius,
+            0.0,
         )
-    radius = Range(state.tip_radius, state.tip_radius, state.tip_radius)
     # The rate of turning is as exact as the balance of the forces that drive it.
     error = state.residual * state.frequency
     flat = planarity(_over_a_turn(state))
-    return _quantities(state.leading_rate, (state.frequency, error), state.energy, radius, flat)
+    return _quantities(
+        state.leading_rate, (state.frequency, error), state.bending_energy, state.tip_radius, flat
+    )
 
 
 def _time_error(state: Flapping) -> float:

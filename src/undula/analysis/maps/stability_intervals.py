@@ -12,11 +12,11 @@ import numpy as np
 from undula.analysis.linear.results import Onset
 from undula.analysis.maps.states_at_forces import states_along
 from undula.analysis.parameters import FORCE
+from undula.analysis.solvers.branches import follow, follow_from_onset
 from undula.analysis.solvers.criticality import is_subcritical
-from undula.analysis.solvers.state_kinds import follow, follow_from_onset
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.follow_branch import Progress, unstable
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound
 from undula.models.model import Model
 
 # Branches are judged from a little above the onset on, where their amplitude is no longer small.
@@ -132,7 +132,10 @@ def moving_stretches(
     fold = min(folds, key=lambda one: one.value, default=None)
     branch = None
     if up_to > start:
-        branch = follow(begun, FORCE, up_to, progress=progress, enough=_hopeless)
+        followed = follow(begun, FORCE, up_to, progress=progress, enough=_hopeless)
+        if isinstance(followed, NotFound):
+            return nothing_known(kind, followed.reason)
+        branch = followed
     changes = _changes(born) + _changes(branch)
     begins = fold.value if fold else onset
     searched_to = start if branch is None else float(branch.values.max())

@@ -11,7 +11,7 @@ from typing import Any
 from undula.analysis.parameters import FORCE
 from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.states.follow_branch import UnresolvedError
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.arrays import Array
 from undula.models.model import Model
 from undula.numerics.continuation.arclength import Point, Steps, advance, follow, located, solved_at
@@ -79,8 +79,9 @@ def states_along(
                 progress(reached)
     except UnresolvedError:
         pass  # what was read off so far holds
-    missing = f"the branch of {kind} from force {hopf.p:.6g} on was followed to {reached:.6g}"
-    return {force: NotFound(missing) for force in forces if force > hopf.p} | reading.preferred()
+    followed = f"the branch of {kind} from force {hopf.p:.6g} on was followed to {reached:.6g}"
+    missing = NotFound(SearchStatus.NOT_REACHED, followed)
+    return {force: missing for force in forces if force > hopf.p} | reading.preferred()
 
 
 def _steps(

@@ -12,7 +12,7 @@ import numpy as np
 
 from undula.analysis.solvers.flapping import flapping_start
 from undula.analysis.solvers.spinning import spinning_start
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.models.model import Model
 from undula.numerics.continuation.arclength import Point, advance
 from undula.numerics.continuation.problem import Problem
@@ -71,9 +71,13 @@ def criticality_of(model: Model, kind: str) -> Criticality | NotFound:
     """Return how a kind of state is born, "spinning" or "flapping"."""
     start = (spinning_start if kind == "spinning" else flapping_start)(model)
     if start is None:
-        return NotFound("the straight state stays stable, so that nothing is born")
+        return NotFound(
+            SearchStatus.NO_ONSET, "the straight state stays stable, so that nothing is born"
+        )
     found = _criticality(kind, *start)
-    return found or NotFound(f"Newton's method finds no {kind} next to the Hopf point")
+    return found or NotFound(
+        SearchStatus.NOT_CONVERGED, f"Newton's method finds no {kind} next to the Hopf point"
+    )
 
 
 def is_subcritical(model: Model, kind: str) -> bool:

@@ -1,11 +1,11 @@
-"""Motions that are periodic up to a turn as equations, and those that flapping gives birth to.
+"""Equations of motions that are periodic up to a turn, and their branches off planar flapping.
 
-A body that is held in one direction, as one that is curved by nature, has none to be turned by: its
-motions are periodic as they are, x(t + T) = x(t), whether they go round or to and fro.
+Bodies without rotational symmetry (natural curvature, unequal bending stiffnesses) have motions
+that are periodic without a turn, x(t + T) = x(t).
 
-Where planar flapping loses or gains stability by a real disturbance out of its plane, a motion out
-of the plane is born. In the frame of half a beat, turned by pi, both are x(t + T) = R(angle) x(t),
-so that the new branch is found along the null vector of these equations.
+Where planar flapping loses or gains stability by a real disturbance out of its plane, a branch of
+motions out of the plane begins. In the frame of half a beat, turned by pi, both motions obey
+x(t + T) = R(angle) x(t), so that the new branch begins along the null vector of these equations.
 """
 
 from collections.abc import Callable
@@ -35,23 +35,22 @@ from undula.numerics.orbits.periodic_orbit import (
 from undula.numerics.orbits.shooting import Shooting, Shot
 from undula.numerics.orbits.symmetry import OrbitSymmetry, Rotation
 
-# A motion that turns back with less variation of its energy than this, over the mean, has become a
-# steady one.
-_STEADY = 0.01
+# Largest variation of the energy over its mean at which a motion that turns back counts as steady.
+_STEADY_VARIATION = 0.01
 
 
 def periodic_family(state: Periodic, parameter: str, scale: float) -> Family[Periodic]:
-    """Return the family of a motion that is periodic up to a turn, along a parameter."""
+    """Return the family of a motion along a parameter; a change by `scale` counts as 1."""
     shooting = periodic_shooting(state.model, parameter, len(state.unknowns))
     start = shooting.shoot(periodic_unknowns(state), value_of(state.model, parameter))
-    assert isinstance(start, Shot)  # the state was found so
+    assert isinstance(start, Shot)  # as when the state was solved for
     problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
     return _family(state.model, problem, parameter, scale)
 
 
 def periodic_unknowns(state: Periodic) -> Array:
-    """Return the unknowns of a state in the equations of its family."""
-    last = [state.duration, state.angle] if state.model.axisymmetric else [state.duration]
+    """Return the unknowns of a state in the equations of its family: start, period[, angle]."""
+    last = [state.period, state.angle] if state.model.axisymmetric else [state.period]
     return np.concatenate([state.start, last])
 
 
@@ -62,7 +61,10 @@ def follow_from_bifurcation(
     parameter: str = FORCE,
     progress: Progress | None = None,
 ) -> Branch[Periodic]:
-    """Follow the motion out of the plane that is born on a branch of planar flapping.
+    """Follow the motion out of the plane that begins at a bifurcation of planar flapping.
+
+    The branch begins along the null vector of the singular equations (Keller 1968; Doedel, Keller &
+    Kernevez 1991).
 
     Parameters
     ----------
@@ -75,10 +77,25 @@ def follow_from_bifurcation(
     progress : callable, optional
         Called with each value that was reached.
 
+    Returns
+    -------
+    Branch
+        Not complete unless it reached `to`.
+
     Raises
     ------
     InputError
-        The bifurcation is none of this kind.
+        The bifurcation is not of this kind.
+
+    Examples
+    --------
+    Following takes a minute:
+
+    >>> import undula as un
+    >>> branch = un.follow_from_onset(
+    ...     un.Filament(12, un.TipLoad(40.0)), "flapping", 80.0
+    ... )  # doctest: +SKIP
+    >>> un.follow_from_bifurcation(branch.bifurcations[0], 60.0)  # doctest: +SKIP
     """
     state = bifurcation.state
     if not isinstance(state, Flapping) or bifurcation.kind != "symmetry breaking":
@@ -89,43 +106,52 @@ def follow_from_bifurcation(
     require_space(state.model)
     u, shooting = _in_space(state), periodic_shooting(state.model, parameter, INTERVALS)
     start = shooting.shoot(u, bifurcation.value)
-    assert isinstance(start, Shot)  # the planar motion was found so
+    assert isinstance(start, Shot)  # as when the planar motion was solved for
     problem = OrbitProblem(shooting, Reference.of(start), LastShot(start))
     scale = abs(to - bifurcation.value) or 1.0
     point = Point(u, bifurcation.value, _null_vector(problem, u, bifurcation.value), 0.0)
     family = _family(state.model, problem, parameter, scale)
-    # Born sideways: the first steps are short.
+    # The branch begins at a constant parameter: the first steps are short.
     steps = Steps(first=0.03, most=0.3, scale=scale)
     return follow_branch(
-        family, u, bifurcation.value, to, steps, progress, enough=_dies, start=point
+        family, u, bifurcation.value, to, steps, progress, enough=_has_become_steady, start=point
     )
 
 
-def _dies(bifurcation: Bifurcation[Periodic]) -> bool:
-    """Tell whether a motion has become a steady one: what follows is the branch's mirror image."""
-    energy = bifurcation.state.energy
-    return bifurcation.kind == "fold" and energy.max - energy.min <= _STEADY * energy.mean
+def _has_become_steady(bifurcation: Bifurcation[Periodic]) -> bool:
+    """Return whether a motion has become steady: the branch then repeats its mirror image."""
+    energy = bifurcation.state.bending_energy
+    return bifurcation.kind == "fold" and energy.max - energy.min <= _STEADY_VARIATION * energy.mean
 
 
 def _in_space(state: Flapping) -> Array:
     """Return half a beat as a motion in space that has turned by pi."""
-    planar = flapping_unknowns(state)
+    half_period = flapping_unknowns(state)[-1]
     equations = state.model.equations
     x = equations.from_plane(state.unknowns[-1])[equations.differential]
-    return np.concatenate([x, [planar[-1], np.pi]])
+    return np.concatenate([x, [half_period, np.pi]])
 
 
 def _null_vector(problem: OrbitProblem, u: Array, p: float) -> Array:
     """Return the direction in which the equations are singular, of length 1 in their norm."""
     linear = problem.evaluate(u, p).linear
-    assert isinstance(linear, DenseLinear)  # as orbits have it
+    assert isinstance(linear, DenseLinear)  # the type of all orbit problems
     direction = np.linalg.svd(linear.matrix)[2][-1]
     return np.asarray(direction / np.sqrt(problem.weights @ direction**2))
 
 
 def periodic_shooting(model: Model, parameter: str, intervals: int) -> Shooting:
-    """Return how to shoot from a start over a period of so many intervals, along a parameter."""
+    """Return the shooting problem of a motion over a period, along a parameter.
 
+    Parameters
+    ----------
+    model : Model
+        In space.
+    parameter : str
+        Name of the parameter.
+    intervals : int
+        Equal time steps in a period.
+    """
     equations = model.equations
 
     def generator(y: Array) -> Array:
@@ -141,7 +167,13 @@ def periodic_shooting(model: Model, parameter: str, intervals: int) -> Shooting:
 
 
 def periodic_start(model: Model) -> None:  # noqa: ARG001
-    """Refuse to begin at an onset: other motions do."""
+    """Refuse to begin at an onset.
+
+    Raises
+    ------
+    InputError
+        Always: branches of periodic motions begin at bifurcations of others.
+    """
     raise InputError(
         "periodic motions begin where others lose stability, not at the onset; follow one from a"
         " value at which there is one"
@@ -151,7 +183,10 @@ def periodic_start(model: Model) -> None:  # noqa: ARG001
 def periodic_judge(
     model: Model, parameter: str
 ) -> Callable[[OrbitProblem, Array, float], Periodic]:
-    """Return the function from a problem along a parameter and its solution to the state."""
+    """Return the function from a problem, a solution of it and the parameter to the state.
+
+    The function raises `UnresolvedError` where the flow is not resolved any more.
+    """
 
     def judge(problem: OrbitProblem, u: Array, p: float) -> Periodic:
         orbit = orbit_at(problem, u, p)
@@ -163,26 +198,26 @@ def periodic_judge(
 
 
 def _family(model: Model, problem: OrbitProblem, parameter: str, scale: float) -> Family[Periodic]:
-    return Family(parameter, problem, periodic_judge(model, parameter), _named, scale)
+    return Family(parameter, problem, periodic_judge(model, parameter), _bifurcation_kind, scale)
 
 
 def periodic_state(model: Model, orbit: Orbit) -> Periodic:
-    """Return the motion that an orbit is, judged."""
+    """Return the record of an orbit, with its residual and its exponents."""
     shot = orbit.shot
-    judged = floquet_of(shot)
+    spectrum = floquet_of(shot)
     return Periodic(
         model=model,
-        duration=shot.duration,
+        period=shot.duration,
         angle=shot.angle,
         unknowns=shot.flow.stages[:, -1],
         residual=float(np.abs((shot.end - shot.y)[shot.moving]).max()),
-        exponents=judged.exponents(shot.duration),
-        trivial=tuple(float(error) for error in judged.known_errors),
+        exponents=spectrum.exponents(shot.duration),
+        trivial=tuple(float(error) for error in spectrum.known_errors),
     )
 
 
-def _named(state: Periodic, index: int) -> str:
-    swing = abs(state.exponents[index].imag) * state.duration
+def _bifurcation_kind(state: Periodic, index: int) -> str:
+    swing = abs(state.exponents[index].imag) * state.period
     if min(swing, abs(swing - np.pi)) > 1e-6:
         return "torus"
     return "period doubling" if swing > 1.0 else "branch point"

@@ -1,41 +1,35 @@
-"""The numbers of a state that are worth taking to the limit of many links, by name."""
+"""Quantities of a state that are extrapolated to the limit of many links, by name."""
 
-from undula.analysis.solvers.equilibrium import Equilibrium
-from undula.analysis.states.periodic_record import Periodic
-from undula.analysis.states.records import Flapping, Spinning
+from undula.analysis.states.records import Flapping
+from undula.analysis.states.state import State
 
 
-def of_steady(state: Spinning | Equilibrium) -> dict[str, float]:
-    """Return those of a shape that does not change."""
-    return {
-        "frequency": state.frequency,
+def quantities_of(state: State) -> dict[str, float]:
+    """Return frequency, energy, tip and leading rate of a state, by name.
+
+    Ranges of a steady state are single numbers; others are given by their ends and their mean.
+    Flapping has a leading rate in its plane and, in space, one out of it.
+    """
+    ranges = {
         "bending_energy": state.bending_energy,
         "tip_radius": state.tip_radius,
         "tip_height": state.tip_height,
-        "leading_rate": state.leading_rate,
     }
+    if state.steady:
+        numbers = {name: values.mean for name, values in ranges.items()}
+    else:
+        numbers = {
+            f"{name}_{part}": getattr(values, part)
+            for name, values in ranges.items()
+            for part in ("min", "max", "mean")
+        }
+    return {"frequency": state.frequency} | numbers | _leading_rates(state)
 
 
-def of_periodic(state: Flapping | Periodic) -> dict[str, float]:
-    """Return those of a motion that repeats itself."""
-    ranges = {
-        "bending_energy": state.energy,
-        "tip_radius": state.tip_radius,
-        "tip_height": state.tip_height,
-    }
-    spread = {
-        f"{name}_{part}": getattr(values, part)
-        for name, values in ranges.items()
-        for part in ("min", "max", "mean")
-    }
-    return {"frequency": state.frequency} | spread | {"leading_rate": state.leading_rate}
-
-
-def of_flapping(state: Flapping) -> dict[str, float]:
-    """Return those of a planar beat."""
+def _leading_rates(state: State) -> dict[str, float]:
+    if not isinstance(state, Flapping):
+        return {"leading_rate": state.leading_rate}
     rates = {"leading_rate_in_plane": state.leading_rate_in_plane}
     if state.leading_rate_out_of_plane is not None:
         rates["leading_rate_out_of_plane"] = state.leading_rate_out_of_plane
-    told = of_periodic(state)
-    del told["leading_rate"]  # the larger of the two
-    return told | rates
+    return rates

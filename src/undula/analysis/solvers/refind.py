@@ -4,11 +4,12 @@ from collections.abc import Callable
 from typing import Any
 
 from undula.analysis.parameters import changed
-from undula.analysis.solvers.state_kinds import follow, kind_of_state
+from undula.analysis.solvers.branches import follow
+from undula.analysis.solvers.state_kinds import kind_of_state
 from undula.analysis.states.branch import Bifurcation
 from undula.analysis.states.extrapolation import Converged, converge
 from undula.analysis.states.follow_branch import Progress
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.errors import InputError
 from undula.models.model import Model
 
@@ -39,7 +40,9 @@ def refind_bifurcation(
     progress : callable, optional
         Called with each value of the parameter that was reached.
     """
-    found: Bifurcation[Any] | NotFound = NotFound("there is nowhere to look for it")
+    found: Bifurcation[Any] | NotFound = NotFound(
+        SearchStatus.ABSENT, "there is nowhere to look for it"
+    )
     for share in _NEARBY:
         away = share * max(1.0, abs(known.value))
         ends = [_inside(model, parameter, known.value, side * away) for side in (-1.0, 1.0)]
@@ -61,10 +64,15 @@ def _between(
     if isinstance(begun, NotFound):
         return begun
     branch = follow(begun, parameter, ends[1], progress=progress, enough=is_it)
+    if isinstance(branch, NotFound):
+        return branch
     for bifurcation in branch.bifurcations:
         if is_it(bifurcation):
             return bifurcation
-    return NotFound(f"no such change between {parameter} {ends[0]:.6g} and {ends[1]:.6g}")
+    return NotFound(
+        SearchStatus.ABSENT,
+        f"no such change between {parameter} {ends[0]:.6g} and {ends[1]:.6g}",
+    )
 
 
 def _inside(model: Model, parameter: str, value: float, away: float) -> float:

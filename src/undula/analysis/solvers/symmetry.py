@@ -1,4 +1,4 @@
-"""Which motions a body can have by its symmetry."""
+"""Refusal of states that a body cannot have by its symmetry."""
 
 from undula.errors import InputError
 from undula.models.model import Model
@@ -10,14 +10,14 @@ def require_space(model: Model) -> None:
     Raises
     ------
     InputError
-        It is.
+        The model is confined.
     """
     if model.dimension != 3:
         raise InputError("a confined model cannot spin; set confined = false")
 
 
 def require_turning(model: Model, kind: str) -> None:
-    """Refuse a body that turns about its axis do not leave as it is.
+    """Refuse a body without rotational symmetry about its axis.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def require_turning(model: Model, kind: str) -> None:
     Raises
     ------
     InputError
-        It has no such symmetry.
+        The body has no such symmetry.
     """
     if not model.axisymmetric:
         raise InputError(

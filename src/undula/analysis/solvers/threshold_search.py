@@ -11,13 +11,14 @@ from typing import Any
 
 from undula.analysis.linear.stability import onset
 from undula.analysis.parameters import FORCE, changed
+from undula.analysis.solvers.branches import follow, follow_from_onset
 from undula.analysis.solvers.criticality import is_subcritical
 from undula.analysis.solvers.refind import refind_bifurcation
-from undula.analysis.solvers.state_kinds import Solved, follow, follow_from_onset, kind_by_name
+from undula.analysis.solvers.state_kinds import Solved, kind_by_name
 from undula.analysis.solvers.symmetry import require_space, require_turning
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.follow_branch import Progress
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.models.model import Model
 
 #: Forces up to which thresholds are looked for by default, in multiples of that of the onset.
@@ -115,7 +116,7 @@ def _ends(model: Model, kind: str, up_to: float | None) -> tuple[float, float] |
         return 0.0, up_to or FARTHEST * _ONSET_AT_REST
     straight_onset = onset(model, method="discrete", later=0)
     if straight_onset.force is None:
-        return NotFound(str(straight_onset))
+        return NotFound(SearchStatus.NO_ONSET, str(straight_onset))
     return _BEGINNING * straight_onset.force, up_to or FARTHEST * straight_onset.force
 
 
@@ -135,6 +136,7 @@ def _branches(
     elif end <= start:
         onset = start / _BEGINNING
         yield Missed(
+            SearchStatus.ABSENT,
             f"{wanted.kind} begins at the onset, at force {onset:.6g}, beyond which was not"
             " searched",
             searched_to=end,
@@ -148,7 +150,7 @@ def _branches(
             return
         branch = follow(state, FORCE, place, progress=progress, enough=wanted.is_it)
         yield branch
-        if not branch.complete:
+        if isinstance(branch, NotFound) or not branch.complete:
             return
         state = branch.states[-1]
 
@@ -193,10 +195,11 @@ class _Seen:
 
     def missed(self, does: str) -> Missed:
         """Return that there is no threshold, in a sentence for what was seen instead."""
-        told = self._sentence(does)
-        if not self.complete:
-            told += ", beyond which its branch could not be followed"
-        return Missed(told, searched_to=self.reached if self.complete else None)
+        finding = self._sentence(does)
+        if self.complete:
+            return Missed(SearchStatus.ABSENT, finding, searched_to=self.reached)
+        finding += ", beyond which its branch could not be followed"
+        return Missed(SearchStatus.NOT_REACHED, finding)
 
     def _sentence(self, does: str) -> str:
         here, there = f"force {self.begins:.6g}", f"up to force {self.reached:.6g}"

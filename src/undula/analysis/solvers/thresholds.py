@@ -14,13 +14,13 @@ from typing import Any
 from undula.analysis.linear.results import Method, Onset
 from undula.analysis.linear.stability import method_for_all, onset
 from undula.analysis.parameters import FORCE, changed
-from undula.analysis.solvers.equilibrium import Equilibrium
 from undula.analysis.solvers.refind import alike, quantities_of, refind_bifurcation
 from undula.analysis.solvers.threshold_search import WANTED, Missed, search
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation
 from undula.analysis.states.extrapolation import converge, error_of_links
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound, SearchStatus
+from undula.analysis.states.records import Equilibrium
 from undula.errors import InputError, is_number
 from undula.models.model import Model
 
@@ -236,7 +236,9 @@ def _onset(
 
 def _crossing_of(model: Model) -> Onset | NotFound:
     straight_onset = onset(model, method="discrete", later=0)
-    return NotFound(str(straight_onset)) if straight_onset.hopf is None else straight_onset
+    if straight_onset.hopf is None:
+        return NotFound(SearchStatus.NO_ONSET, str(straight_onset))
+    return straight_onset
 
 
 def _of_crossing(onset: Onset) -> dict[str, float]:

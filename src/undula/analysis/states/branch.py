@@ -1,53 +1,32 @@
-"""A branch of states along a parameter, and its bifurcations, as records."""
+"""Records of a branch of states along a parameter and of its bifurcations."""
 
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
-from undula.analysis.observables.shapes import Range
-from undula.arrays import Array, ComplexArray
-
-
-class State(Protocol):
-    """What a branch asks of its states."""
-
-    @property
-    def exponents(self) -> ComplexArray:
-        """Of disturbances, by falling real part, without the trivial ones."""
-
-    @property
-    def frequency(self) -> float:
-        """Cycles per T."""
-
-    @property
-    def energy(self) -> Range:
-        """Bending energy over a cycle [B/L]."""
-
-    @property
-    def stable(self) -> bool:
-        """Whether all disturbances decay."""
-
+from undula.analysis.states.state import State
+from undula.arrays import Array
 
 S = TypeVar("S", bound=State)
 
 
 @dataclass(frozen=True)
 class Bifurcation(Generic[S]):
-    """A point of a branch at which a disturbance turns from decay to growth, or back.
+    """A point of a branch at which a disturbance changes from decay to growth, or back.
 
     Attributes
     ----------
     kind : str
         "fold", "torus", "symmetry breaking", "period doubling", "Hopf" or "branch point".
     value, error : float
-        The parameter there, and how exactly it was located on the discrete model.
+        The parameter there, and the error of its location on the discrete model.
     state : State
         The state there.
     frequency : float
         Of the state [cycles per T].
     second_frequency : float or None
-        Of the disturbance that turns, seen in the state's own frame [cycles per T].
+        Of the critical disturbance, in the state's own frame [cycles per T]; None if it is real.
     unstable_before, unstable_after : int
-        How many disturbances grow before and after, in the direction of following.
+        Numbers of disturbances that grow before and after, in the direction of following.
     """
 
     kind: str
@@ -83,9 +62,9 @@ class Branch(Generic[S]):
     states : tuple of State
         The states, m of them.
     bifurcations : tuple of Bifurcation
-        Located in between.
+        Bifurcations between the states.
     complete : bool
-        Whether the branch came to the end that was asked for.
+        Whether the branch reached the value that was asked for.
     """
 
     parameter: str

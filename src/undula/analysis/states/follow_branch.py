@@ -1,4 +1,4 @@
-"""Branches of states along a parameter: stability all along, and bifurcations located and named."""
+"""Continuation of a branch: stability of all its states, bifurcations located and named."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -7,33 +7,35 @@ from typing import Any, Generic
 
 import numpy as np
 
-from undula.analysis.states.branch import Bifurcation, Branch, S, State
+from undula.analysis.states.branch import Bifurcation, Branch, S
+from undula.analysis.states.state import State
 from undula.arrays import Array
 from undula.numerics.continuation.arclength import Point, Steps, follow, located, with_tangent
 from undula.numerics.continuation.problem import Problem
 
-# Bifurcations are located to this share of the scale of the parameter.
-_LOCATED = 1e-9
-# Partners agree to round-off of the exponents.
-_TOGETHER = 1e-6
-# Points of a branch, at most.
+# Error of the location of a bifurcation, relative to the scale of the parameter.
+_LOCATION_ERROR = 1e-9
+# Relative difference of an exponent from the conjugate of its partner, at most: round-off.
+_CONJUGATE_ERROR = 1e-6
+# Largest number of points of a branch.
 _MOST_POINTS = 2000
 
 
 @dataclass(frozen=True)
 class Family(Generic[S]):
-    """A kind of state that can be followed.
+    """Equations of a kind of state along a parameter, and the records of their solutions.
 
     Attributes
     ----------
     parameter : str
         Name of the parameter.
     problem : Problem
-        Its equations.
+        Equations of the states.
     judge : callable
         From a problem and its solution (u, p) to the state; raises `UnresolvedError` if that fails.
     name : callable
-        From the state at a bifurcation and the index of the critical exponent to the kind.
+        From the state at a bifurcation and the index of the critical exponent to the kind of
+        bifurcation.
     scale : float
         A change of the parameter that counts as 1.
     """
@@ -46,7 +48,7 @@ class Family(Generic[S]):
 
 
 class UnresolvedError(ArithmeticError):
-    """A solution that can no longer be turned into a state: its flow is not resolved any more."""
+    """A solution whose state cannot be recorded, as its flow is no longer resolved."""
 
 
 #: Called with the value of the parameter that was reached.
@@ -75,32 +77,38 @@ def follow_branch(
     to : float
         Value of the parameter at which to end. A branch that turns back ends where it began.
     steps : Steps
+        Sizes of the steps in arclength.
     progress : callable, optional
         Called with each value that was reached.
     enough : callable, optional
-        Tells of a bifurcation whether the branch may end behind it.
+        From a bifurcation to whether the branch may end behind it.
     start : Point, optional
-        The same solution with the direction in which to begin, for a branch that is born sideways;
-        without it the branch is followed towards `to`.
+        The same solution with the direction in which to begin, for a branch that begins at a
+        constant parameter; without it the branch is followed towards `to`.
     least : float, optional
-        How far the branch may go back beyond where it began.
+        Value of the parameter down to which the branch may turn back beyond its beginning.
     stop : callable, optional
-        Tells whether to end with what there is.
+        Returns whether to end with the states so far.
+
+    Returns
+    -------
+    Branch
+        Not complete unless it reached `to`.
     """
     upwards = np.sign(to - p) or 1.0
     problem = family.problem.referred_to(u)
     flat = Point(u, p, np.zeros_like(u), upwards * family.scale)
     point = start or with_tangent(problem, flat, family.scale)
     states, values = [family.judge(problem, u, p)], [p]
-    found: list[Bifurcation[S]] = []
+    bifurcations: list[Bifurcation[S]] = []
     ends = min(p, to, p if least is None else least), max(p, to)
     for reached in follow(problem, point, steps, ends):
         if progress:
             progress(reached.p)
         try:
             state = family.judge(problem, reached.u, reached.p)
-            between = _Interval(family, problem, point, reached, (states[-1], state))
-            found += between.bifurcations()
+            interval = _Interval(family, problem, point, reached, (states[-1], state))
+            bifurcations += interval.bifurcations()
         except UnresolvedError:
             break
         states.append(state)
@@ -108,16 +116,16 @@ def follow_branch(
         if (
             stop()
             or len(states) >= _MOST_POINTS
-            or any(enough(bifurcation) for bifurcation in found)
+            or any(enough(bifurcation) for bifurcation in bifurcations)
         ):
             break
         point, problem = reached, problem.referred_to(reached.u)
     complete = values[-1] == to
-    return Branch(family.parameter, np.array(values), tuple(states), tuple(found), complete)
+    return Branch(family.parameter, np.array(values), tuple(states), tuple(bifurcations), complete)
 
 
 def unstable(state: State) -> int:
-    """Return how many disturbances grow."""
+    """Return the number of disturbances that grow."""
     return int(np.count_nonzero(state.exponents.real > 0.0))
 
 
@@ -134,37 +142,37 @@ class _Interval(Generic[S]):
     def bifurcations(self) -> list[Bifurcation[S]]:
         """Return the bifurcations in between, in the order of following."""
         counts = unstable(self.states[0]), unstable(self.states[1])
-        found = sorted(self._located(*counts), key=lambda one: self._way_to(one[0]))
-        count, result = counts[0], []
-        for at, kind, index, several in found:
-            after = count + several * int(np.sign(counts[1] - counts[0]))
-            result.append(self._bifurcation(at, kind, index, (count, after)))
+        crossings = sorted(self._located(*counts), key=lambda crossing: self._way_to(crossing[0]))
+        count, bifurcations = counts[0], []
+        for point, kind, index, multiplicity in crossings:
+            after = count + multiplicity * int(np.sign(counts[1] - counts[0]))
+            bifurcations.append(self._bifurcation(point, kind, index, (count, after)))
             count = after
-        return result
+        return bifurcations
 
     def _located(self, first: int, last: int) -> Iterator[tuple[Point, str, int | None, int]]:
-        """Yield points, kinds, critical indices, and how many exponents change their sign."""
+        """Yield points, kinds, critical indices, and the number of exponents that change sign."""
         changing = list(range(min(first, last), max(first, last)))
         if self.before.tangent_p * self.after.tangent_p < 0.0:
-            at = self._zero_of(lambda point: point.tangent_p)
-            if at is not None:
+            fold = self._zero_of(lambda point: point.tangent_p)
+            if fold is not None:
                 # Here one real exponent changes its sign with the parameter's direction.
-                own = int(np.argmin(np.abs(self._state(at).exponents)))
-                yield at, "fold", None, changing.count(own)
-                changing = [index for index in changing if index != own]
+                critical = int(np.argmin(np.abs(self._state(fold).exponents)))
+                yield fold, "fold", None, changing.count(critical)
+                changing = [index for index in changing if index != critical]
         while changing:
             index = changing[0]
-            at = self._zero_of(partial(self._rate, index))
-            if at is None:
+            zero = self._zero_of(partial(self._rate, index))
+            if zero is None:
                 return
-            state = self._state(at)
-            several = 2 if _is_pair(state, index) else 1
-            yield at, self.family.name(state, index), index, several
-            changing = changing[several:]
+            state = self._state(zero)
+            multiplicity = 2 if _is_pair(state, index) else 1
+            yield zero, self.family.name(state, index), index, multiplicity
+            changing = changing[multiplicity:]
 
     def _zero_of(self, test: Callable[[Point], float]) -> Point | None:
         scale = self.family.scale
-        return located(self.problem, self.before, self.after, test, scale, _LOCATED)
+        return located(self.problem, self.before, self.after, test, scale, _LOCATION_ERROR)
 
     def _rate(self, index: int, point: Point) -> float:
         return float(self._state(point).exponents[index].real)
@@ -178,16 +186,16 @@ class _Interval(Generic[S]):
         return float(across) + along
 
     def _bifurcation(
-        self, at: Point, kind: str, index: int | None, counts: tuple[int, int]
+        self, point: Point, kind: str, index: int | None, counts: tuple[int, int]
     ) -> Bifurcation[S]:
-        state = self._state(at)
+        state = self._state(point)
         swing = 0.0
         if index is not None and _is_pair(state, index):
             swing = float(abs(state.exponents[index].imag))
         return Bifurcation(
             kind=kind,
-            value=at.p,
-            error=_LOCATED * self.family.scale,
+            value=point.p,
+            error=_LOCATION_ERROR * self.family.scale,
             state=state,
             frequency=state.frequency,
             second_frequency=swing / (2.0 * np.pi) if swing > 0.0 else None,
@@ -197,10 +205,11 @@ class _Interval(Generic[S]):
 
 
 def _is_pair(state: State, index: int) -> bool:
-    """Tell whether an exponent and the next one are complex conjugates.
+    """Return whether an exponent and the next one are complex conjugates.
 
     A negative multiplier has a complex exponent as well, but no partner.
     """
-    one, other = state.exponents[index], state.exponents[index + 1 : index + 2]
-    apart = np.abs(other - np.conj(one))
-    return bool(one.imag != 0.0 and other.size and apart[0] < _TOGETHER * abs(one))
+    exponent, following = state.exponents[index], state.exponents[index + 1 : index + 2]
+    if exponent.imag == 0.0 or not following.size:
+        return False
+    return bool(np.abs(following - np.conj(exponent))[0] < _CONJUGATE_ERROR * abs(exponent))

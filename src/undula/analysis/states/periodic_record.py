@@ -1,56 +1,48 @@
-"""A relative periodic orbit, as a record: a shape that repeats itself up to a turn."""
+"""Record of a relative periodic orbit: a shape that repeats itself up to a turn."""
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from undula.analysis.observables.period_statistics import finely, over_period
-from undula.analysis.observables.shapes import (
-    Range,
-    mean_position,
-    tip_height,
-    transverse,
-)
+from undula.analysis.observables.shapes import Range, mean_position, tip_height, transverse
+from undula.analysis.states.state import State
 from undula.arrays import Array, ComplexArray, Shapes
 from undula.models.model import Model
 
-# A line of so few cycles in a period is the mean of a motion that does not turn.
+# Fewer cycles in a period than this [1] make a line of the mean of a motion that does not turn.
 _AT_REST = 1e-6
 
 
 @dataclass(frozen=True)
-class Periodic:
+class Periodic(State):
     """A motion that repeats itself after a time, turned by an angle: x(t + T) = R(angle) x(t).
-
-    The angle is 0 for a body that is held in one direction.
 
     Modulated spinning, precessing flapping and other toroidal motions are of this kind.
 
     Attributes
     ----------
-    model : Model
-    duration : float
+    period : float
         The time after which the shape repeats itself [T].
     angle : float
-        The angle by which it has turned then [rad].
+        The angle by which it has turned then [rad]; 0 for a body without rotational symmetry.
     unknowns : ndarray of shape (m, n)
-        Positions and multipliers at equally spaced instants, the last one after `duration`.
+        At equally spaced instants, the last one after a period.
     residual : float
-        By how much the motion fails to close [L].
-    exponents : ndarray of shape (k,)
-        Of disturbances [1/T], by falling real part, without trivial ones.
+        Distance by which the motion fails to close [L].
     trivial : tuple of float
         Errors of the multipliers of a shift in time and of a turn about the axis.
     time_error : float
         Estimated error of the frequency by the steps in time [cycles per T].
-    error : float or None
-        Estimated error of the frequency against the body that the numbers stand for, of links and
-        steps together [cycles per T]; None if it was not asked for.
     """
 
+    kind: ClassVar[str] = "periodic"
+
     model: Model
-    duration: float
+    period: float
     angle: float
     unknowns: Array
     residual: float
@@ -58,6 +50,13 @@ class Periodic:
     trivial: tuple[float, ...]
     time_error: float = np.nan
     error: float | None = None
+
+    @property
+    def duration(self) -> float:
+        """Former name of `period`."""
+        message = "Periodic.duration is now period; the old name goes with the next release"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return self.period
 
     @property
     def nodes(self) -> Shapes:
@@ -70,17 +69,12 @@ class Periodic:
         end = self.model.positions(self.unknowns[-1])
         return self.model.rotate(end, -self.angle) if self.model.axisymmetric else end
 
-    @property
-    def force(self) -> float:
-        """Total follower force [B/L^2]."""
-        return self.model.load.force
-
     @cached_property
     def turns(self) -> float:
-        """Cycles during `duration` of the strongest line of the mean position, seen from the lab.
+        """Cycles in a period of the strongest line of the mean position, in the laboratory frame.
 
-        The shape tells how far it has turned up to full turns only; which line is the strongest
-        tells the rest, as it does for the frequency of a run. Positive from x to y.
+        The shape fixes its turn up to full turns only. The strongest line fixes the rest, as it
+        does for the frequency of a run. Positive from x to y.
         """
         across = self._turned_back(transverse(mean_position(self.nodes)))
         lines = np.fft.fft(across)
@@ -90,8 +84,8 @@ class Periodic:
 
     @property
     def frequency(self) -> float:
-        """Cycles per T of the whole motion, that of its strongest line as for a run."""
-        return abs(self.turns) / self.duration
+        """Cycles per T of the strongest line of the motion, as for a run."""
+        return abs(self.turns) / self.period
 
     @property
     def solver_error(self) -> float:
@@ -101,24 +95,24 @@ class Periodic:
     @property
     def shape_frequency(self) -> float:
         """Repetitions of the shape per T."""
-        return 1.0 / self.duration
+        return 1.0 / self.period
 
     @cached_property
-    def energy(self) -> Range:
+    def bending_energy(self) -> Range:
         """Bending energy [B/L]."""
         return over_period(self.model.observe(self.unknowns).bending_energy)
 
     @cached_property
     def tip_radius(self) -> Range:
         """Distance of the tip from the axis [L]."""
-        # Near the axis the distance has a kink, which the way of the tip has not.
+        # Near the axis the distance has a kink, which the path of the tip has not.
         across = self._turned_back(transverse(self.nodes[:, -1]))
         return over_period(np.hypot(finely(across.real), finely(across.imag)))
 
     def _turned_back(self, across: ComplexArray) -> ComplexArray:
         """Return x + i y (m,) in a frame that turns with the motion, in which it is periodic."""
-        passed = np.arange(1, across.size + 1) / across.size
-        return np.asarray(across * np.exp(-1j * self.angle * passed), dtype=np.complex128)
+        periods = np.arange(1, across.size + 1) / across.size
+        return np.asarray(across * np.exp(-1j * self.angle * periods), dtype=np.complex128)
 
     @cached_property
     def tip_height(self) -> Range:
@@ -127,23 +121,13 @@ class Periodic:
 
     @cached_property
     def power_balance_error(self) -> float:
-        """Difference of active power and dissipation in the mean, relative to either."""
+        """Difference of active power and dissipation over a period, relative to the former."""
         observed = self.model.observe(self.unknowns)
         active, dissipated = np.mean(observed.active_power), np.mean(observed.dissipation)
         return float(abs(active - dissipated) / abs(active))
 
-    @property
-    def leading_rate(self) -> float:
-        """Largest growth rate of a disturbance [1/T]."""
-        return float(self.exponents[0].real)
-
-    @property
-    def stable(self) -> bool:
-        """Whether all disturbances decay."""
-        return self.leading_rate < 0.0
-
     def __str__(self) -> str:
-        """Tell it in one line."""
+        """Return frequencies, force and stability in one line."""
         word = "stable" if self.stable else "unstable"
         return (
             f"{self.frequency:.8g} cycles and {self.shape_frequency:.8g} shapes per T under force"

@@ -1,116 +1,36 @@
-"""States that were solved for: what is common to spinning and flapping, and what to say of none.
+"""Records of spinning, flapping and resting states; fields of all states are those of `State`."""
 
-`exponents` are the growth rates and angular frequencies [1/T] of small disturbances of a state, by
-falling real part, without those that belong to its symmetries (a shift in time, a turn about the
-axis), which are exactly 0 and are kept apart as `trivial`: their distance from 0 tells how well
-the state was solved for.
-"""
-
+import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from undula.analysis.observables.period_statistics import finely, over_period
-from undula.analysis.observables.shapes import Range, envelope, tip_height, tip_radius
-from undula.arrays import Array, ComplexArray, Nodes, Shapes
+from undula.analysis.observables.shapes import Range, envelope, tip_height
+from undula.analysis.states.state import FixedShape, State, by_falling_real_part
+from undula.arrays import Array, ComplexArray, Shapes
 from undula.models.model import Model
 
 
 @dataclass(frozen=True)
-class NotFound:
-    """No state was found; false in a condition.
-
-    Attributes
-    ----------
-    reason : str
-        What was tried, how far it came, and what to try next, in one sentence.
-    residual : float or None
-        The residual at which the search ended, None if there was nothing to search from.
-    """
-
-    reason: str
-    residual: float | None = None
-
-    def __bool__(self) -> bool:
-        """Return False: there is no state."""
-        return False
-
-
-class FixedShape:
-    """What is common to states whose shape does not change: it turns evenly, or rests."""
-
-    model: Model
-    unknowns: Array
-    exponents: ComplexArray
-
-    @property
-    def x(self) -> Array:
-        """The state of the model, shape (size,)."""
-        return self.model.positions(self.unknowns)
-
-    @property
-    def nodes(self) -> Nodes:
-        """Positions of the nodes (N + 1, 3) [L]."""
-        return self.model.nodes(self.x)
-
-    @property
-    def force(self) -> float:
-        """Total follower force [B/L^2]."""
-        return self.model.load.force
-
-    @cached_property
-    def bending_energy(self) -> float:
-        """Bending energy [B/L]."""
-        return float(self.model.observe(self.unknowns[None, :]).bending_energy[0])
-
-    @property
-    def energy(self) -> Range:
-        """Bending energy [B/L] over a cycle, which is constant."""
-        return Range(self.bending_energy, self.bending_energy, self.bending_energy)
-
-    @property
-    def tip_radius(self) -> float:
-        """Distance of the tip from the axis [L]."""
-        return float(tip_radius(self.nodes))
-
-    @property
-    def tip_height(self) -> float:
-        """Height of the tip above the clamp [L]."""
-        return float(tip_height(self.nodes))
-
-    @property
-    def leading_rate(self) -> float:
-        """Largest growth rate of a disturbance [1/T]."""
-        return float(self.exponents[0].real)
-
-    @property
-    def stable(self) -> bool:
-        """Whether all disturbances decay."""
-        return self.leading_rate < 0.0
-
-
-@dataclass(frozen=True)
 class Spinning(FixedShape):
-    """A relative equilibrium: a fixed shape that turns about the axis at a constant rate.
+    """A relative equilibrium: a constant shape that turns about the axis at a constant rate.
 
     Attributes
     ----------
-    model : Model
-    unknowns : ndarray of shape (n,)
-        Positions and multipliers.
     rate : float
         Rate of turning [rad/T], counterclockwise if positive.
     residual : float
-        Largest entry of what is left of the equations, relative to the forces in them.
+        Largest entry of the residual, relative to the forces of the equations.
     exponents : ndarray of shape (k,)
-        Of disturbances seen in the frame that turns with it.
+        Of disturbances in the frame that turns with the shape.
     trivial : complex
         The exponent of a turn about the axis: the one next to 0.
-    error : float or None
-        Estimated error of the frequency against the body that the numbers stand for, of links and
-        solver together [turns per T]; None if it was not asked for.
     """
+
+    kind: ClassVar[str] = "spinning"
 
     model: Model
     unknowns: Array
@@ -126,21 +46,26 @@ class Spinning(FixedShape):
         return abs(self.rate) / (2.0 * np.pi)
 
     @property
+    def period(self) -> float:
+        """Time of a turn [T]."""
+        return 2.0 * np.pi / abs(self.rate) if self.rate else math.inf
+
+    @property
     def solver_error(self) -> float:
         """Estimated error of the frequency on these links [turns per T].
 
-        What is left of the equations turns the shape as the exponent does that should be 0.
+        The residual turns the shape at the rate of the exponent that should be 0.
         """
         return (self.residual * abs(self.rate) + abs(self.trivial)) / (2.0 * np.pi)
 
     @cached_property
     def power_balance_error(self) -> float:
-        """Difference of active power and dissipation, relative to either."""
+        """Difference of active power and dissipation, relative to the former."""
         active, dissipated = self.model.power(self.x)
         return abs(active - dissipated) / abs(active)
 
     def __str__(self) -> str:
-        """Tell it in one line."""
+        """Return kind, frequency, force and stability in one line."""
         word = "stable" if self.stable else "unstable"
         return (
             f"spinning at {self.frequency:.8g} turns per T under force {self.force:.6g}: {word},"
@@ -149,34 +74,80 @@ class Spinning(FixedShape):
 
 
 @dataclass(frozen=True)
-class Flapping:
+class Equilibrium(FixedShape):
+    """A shape at rest.
+
+    Attributes
+    ----------
+    residual : float
+        Largest force that is not in balance [B/L^2].
+    error : float or None
+        None: the frequency is 0 exactly.
+    """
+
+    kind: ClassVar[str] = "equilibrium"
+
+    model: Model
+    unknowns: Array
+    residual: float
+    exponents: ComplexArray
+    error: float | None = None
+
+    @property
+    def frequency(self) -> float:
+        """Cycles per T: 0."""
+        return 0.0
+
+    @property
+    def period(self) -> float:
+        """Infinite: nothing repeats."""
+        return math.inf
+
+    @property
+    def solver_error(self) -> float:
+        """Error of the frequency: 0."""
+        return 0.0
+
+    @property
+    def power_balance_error(self) -> float:
+        """Difference of active power and dissipation: 0, as both vanish."""
+        return 0.0
+
+    def __str__(self) -> str:
+        """Return force, stability and radius of the tip in one line."""
+        word = "stable" if self.stable else "unstable"
+        return (
+            f"at rest under force {self.force:.6g}: {word}, leading rate {self.leading_rate:.4g}"
+            f" /T, tip {self.tip_radius.mean:.4g} L off the axis"
+        )
+
+
+@dataclass(frozen=True)
+class Flapping(State):
     """A planar beat: a periodic orbit that is its own mirror image half a period later.
 
-    Multipliers and exponents are those of a whole period; those of disturbances in the plane and
-    out of it are apart, as neither drives the other.
+    Multipliers and exponents are those of a whole period. Disturbances in the plane and out of it
+    are independent of each other and kept apart.
 
     Attributes
     ----------
     model : Model
         In space, or confined to the plane; then there are no disturbances out of it.
-    period : float
-        Time of one beat [T].
     time : ndarray of shape (m,)
         Equally spaced instants over one period [T].
     unknowns : ndarray of shape (m, n)
-        Positions and multipliers of the model confined to the plane, at these instants.
+        Of the model confined to the plane, at these instants.
     residual : float
-        By how much the beat fails to close [L].
+        Distance by which the beat fails to close [L].
     in_plane, out_of_plane : ndarray of shape (k,)
         Exponents [1/T] of disturbances, by falling real part, without trivial ones.
     trivial : tuple of float
         |multiplier - 1| of a shift in time, and of a turn about the axis unless confined.
     time_error : float
         Estimated error of the frequency by the steps in time [beats per T].
-    error : float or None
-        Estimated error of the frequency against the body that the numbers stand for, of links and
-        steps together [beats per T]; None if it was not asked for.
     """
+
+    kind: ClassVar[str] = "flapping"
 
     model: Model
     period: float
@@ -200,11 +171,6 @@ class Flapping:
         return self.planar.nodes(self.planar.positions(self.unknowns))
 
     @property
-    def force(self) -> float:
-        """Total follower force [B/L^2]."""
-        return self.model.load.force
-
-    @property
     def frequency(self) -> float:
         """Beats per T."""
         return 1.0 / self.period
@@ -215,13 +181,13 @@ class Flapping:
         return self.time_error
 
     @cached_property
-    def energy(self) -> Range:
+    def bending_energy(self) -> Range:
         """Bending energy [B/L] over the period."""
         return over_period(self.planar.observe(self.unknowns).bending_energy)
 
     @cached_property
     def tip_radius(self) -> Range:
-        """Distance of the tip from the axis [L] over the period; 0 as it passes."""
+        """Distance of the tip from the axis [L] over the period; 0 as it crosses the axis."""
         sideways = finely(self.nodes[:, -1, 0])
         return Range(0.0, envelope(sideways).max, float(np.mean(np.abs(sideways))))
 
@@ -232,7 +198,7 @@ class Flapping:
 
     @cached_property
     def power_balance_error(self) -> float:
-        """Difference of active power and dissipation over the period, relative to either."""
+        """Difference of active power and dissipation over the period, relative to the former."""
         observed = self.planar.observe(self.unknowns)
         active, dissipated = (
             float(np.mean(power)) for power in (observed.active_power, observed.dissipation)
@@ -242,8 +208,7 @@ class Flapping:
     @cached_property
     def exponents(self) -> ComplexArray:
         """Exponents [1/T] of all disturbances, by falling real part, without trivial ones."""
-        both = np.concatenate([self.in_plane, self.out_of_plane])
-        return both[np.lexsort((-both.imag, -both.real))]
+        return by_falling_real_part(np.concatenate([self.in_plane, self.out_of_plane]))
 
     @property
     def leading_rate_in_plane(self) -> float:
@@ -255,18 +220,8 @@ class Flapping:
         """Largest growth rate of a disturbance out of the plane [1/T], None if confined."""
         return float(self.out_of_plane[0].real) if self.out_of_plane.size else None
 
-    @property
-    def leading_rate(self) -> float:
-        """Largest growth rate of a disturbance [1/T]."""
-        return float(self.exponents[0].real)
-
-    @property
-    def stable(self) -> bool:
-        """Whether all disturbances decay."""
-        return self.leading_rate < 0.0
-
     def __str__(self) -> str:
-        """Tell it in one line."""
+        """Return kind, frequency, force and stability in one line."""
         word = "stable" if self.stable else "unstable"
         out = self.leading_rate_out_of_plane
         outside = "" if out is None else f", out of it {out:.4g} /T"

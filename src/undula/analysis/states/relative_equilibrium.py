@@ -1,11 +1,11 @@
 """A fixed shape that turns at a constant rate, as a problem for Newton's method and continuation.
 
-In the frame that turns with it a spinning filament is at rest: its velocity is Omega S x, so that
+A spinning filament is at rest in a frame that turns with it: its velocity is Omega S x, so that
 
     R(x) Omega S x = f(x, z),    g(x, z) = 0,    <S x_ref, x> = 0.
 
-The unknowns are u = (y, Omega) with y = (x, z); the last equation picks one of all the turned
-copies, the one turned least from a reference.
+The unknowns are u = (y, Omega) with y = (x, z). The last equation picks one of all the turned
+copies: the one turned least from a reference.
 """
 
 from dataclasses import dataclass, replace
@@ -16,17 +16,21 @@ import numpy as np
 
 from undula.analysis.parameters import changed, neighbours
 from undula.analysis.states.records import Spinning
+from undula.analysis.states.state import by_falling_real_part
 from undula.arrays import Array, ComplexArray
-from undula.errors import InputError
 from undula.models.model import Model
 from undula.numerics.continuation.problem import Evaluation
 from undula.numerics.linalg.bordered import BandFactors, BorderedBand
 
-# Root mean square distance from the axis [L] up to which a shape passes for straight: beyond the
-# last step of Newton's method, far below that of a spinning state but at its very beginning.
+# Root mean square distance from the axis [L] up to which a shape counts as straight: beyond the
+# last step of Newton's method, far below that of a spinning state except at its very beginning.
 _STRAIGHT = 1e-6
-# Inverse iteration begins so far beside an exponent, relative to it: twice is then enough.
-_ASIDE = 1e-6
+# Offset from an exponent at which inverse iteration begins, relative to it: two steps suffice.
+_OFFSET = 1e-6
+
+
+class StraightShapeError(np.linalg.LinAlgError):
+    """The equations are singular at a straight shape, which turns at any rate."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +55,9 @@ class TurningShape:
 
     @cached_property
     def weights(self) -> Array:
-        """A mean square of positions, and the square of the rate relative to its scale."""
-        moves = self.model.equations.differential
-        weights: Array = np.append(moves / np.count_nonzero(moves), self.rate_scale**-2)
+        """Weights (n + 1,) of a mean square of positions and of the rate over its scale."""
+        moving = self.model.equations.differential
+        weights: Array = np.append(moving / np.count_nonzero(moving), self.rate_scale**-2)
         return weights
 
     def referred_to(self, u: Array) -> Self:
@@ -61,7 +65,13 @@ class TurningShape:
         return replace(self, reference=u[:-1])
 
     def evaluate(self, u: Array, p: float) -> Evaluation:
-        """Return residual and derivatives at (u, p)."""
+        """Return residual and derivatives at (u, p).
+
+        Raises
+        ------
+        StraightShapeError
+            The shape is straight.
+        """
         residual, linear = self._linearised(changed(self.model, self.parameter, p), u)
         y, rate = u[:-1], float(u[-1])
         return Evaluation(residual, linear, np.append(self._by_parameter(y, rate, p), 0.0))
@@ -72,20 +82,17 @@ class TurningShape:
         matrix, _ = equations.parts(y, rate * velocity, rate)
         phase, soft, least = self._phase
         if phase @ velocity < least:
-            raise InputError(
-                "a straight shape turns at any rate, so that no spinning state is near it;"
-                " begin with one that is bent"
-            )
+            raise StraightShapeError
         linear = BorderedBand(matrix, dragged[:, None], phase[None, :], np.zeros((1, 1)), soft=soft)
         residual = equations.residual(y, rate * velocity)
         return np.append(residual, phase @ y), linear
 
     @cached_property
     def _phase(self) -> tuple[Array, int, float]:
-        """The unit vector (n,) along which the reference turns, and where it is the largest.
+        """The unit vector (n,) along which the reference turns, and the index of its largest entry.
 
-        Then how much of its own turning a shape has along it at least if it is not to pass for
-        straight; along that of a straight reference none has any.
+        The last number is the least component along it of a shape's own turning, below which the
+        shape counts as straight. If the reference is straight, all shapes do.
         """
         equations = self.model.equations
         phase = equations.turning(self.reference)[0]
@@ -102,16 +109,16 @@ class TurningShape:
 
 
 class TurningShapeAlone(TurningShape):
-    """The same under the model's own force, for who asks for no other: three times as fast."""
+    """The same equations under the model's own force alone: three times as fast to evaluate."""
 
     def evaluate(self, u: Array, p: float) -> Evaluation:  # noqa: ARG002
-        """Return residual and derivative at u, and nothing for the parameter."""
+        """Return residual and derivative at u, with 0 for the derivative by the parameter."""
         return Evaluation(*self._linearised(self.model, u), np.zeros(u.size))
 
 
 @dataclass(frozen=True)
 class Disturbances:
-    """Small disturbances q of a spinning state, seen in its own frame: dq/dt = A q.
+    """Small disturbances q of a spinning state in its own frame: dq/dt = A q.
 
     Attributes
     ----------
@@ -129,27 +136,26 @@ class Disturbances:
 
     @classmethod
     def of(cls, model: Model, y: Array, rate: float) -> Self:
-        """Return those of positions and multipliers (n,) at a rate of turning [rad/T]."""
+        """Return the disturbances of unknowns (n,) at a rate of turning [rad/T]."""
         equations = model.equations
         velocity, _ = equations.turning(y)
         matrix, drag = equations.parts(y, rate * velocity, rate)
-        # Any shift that is no eigenvalue will do; those of interest are of the size of the rate.
+        # Any shift that is not an eigenvalue serves; exponents of interest are of the rate's size.
         shift = max(1.0, abs(rate))
         basis = equations.displacements(y)
-        answer = BandFactors(matrix + shift * drag).solve(_times(drag, basis))
-        return cls(basis, shift, basis.T @ answer)
+        inverse = BandFactors(matrix + shift * drag).solve(_times(drag, basis))
+        return cls(basis, shift, basis.T @ inverse)
 
     @cached_property
     def exponents(self) -> ComplexArray:
         """Growth rates and angular frequencies (k,) [1/T], by falling real part."""
         inverse = np.asarray(np.linalg.eigvals(self.inverse), dtype=np.complex128)
-        values = self.shift - 1.0 / inverse
-        return values[np.lexsort((-values.imag, -values.real))]
+        return by_falling_real_part(self.shift - 1.0 / inverse)
 
     def amplitude(self, exponent: complex) -> ComplexArray:
         """Return the vector (n,) whose product with a displacement is the amplitude of a mode."""
-        aside = _ASIDE * (1.0 + 1.0j) * abs(exponent)
-        shifted = self.inverse.T - np.eye(len(self.inverse)) / (self.shift - exponent - aside)
+        offset = _OFFSET * (1.0 + 1.0j) * abs(exponent)
+        shifted = self.inverse.T - np.eye(len(self.inverse)) / (self.shift - exponent - offset)
         vector = np.linalg.solve(shifted, np.ones(len(shifted), dtype=np.complex128))
         vector = np.linalg.solve(shifted, vector / np.linalg.norm(vector))
         return np.asarray(self.basis @ (vector / np.linalg.norm(vector)), dtype=np.complex128)
@@ -158,26 +164,34 @@ class Disturbances:
 def turning_state(
     model: Model, y: Array, rate: float, disturbances: Disturbances | None = None
 ) -> Spinning:
-    """Return the spinning state of positions and multipliers (n,) and a rate [rad/T], judged.
+    """Return the record of a spinning state, with its residual and its exponents.
 
-    Its disturbances can be given if they are known.
+    Parameters
+    ----------
+    model : Model
+    y : ndarray of shape (n,)
+        Positions and multipliers.
+    rate : float
+        Rate of turning [rad/T].
+    disturbances : Disturbances, optional
+        Those of the state, if they have been computed already.
     """
     velocity, dragged = model.equations.turning(y)
-    left = model.equations.residual(y, rate * velocity)
+    residual = model.equations.residual(y, rate * velocity)
     values = (disturbances or Disturbances.of(model, y, rate)).exponents
-    own = int(np.argmin(np.abs(values)))
+    trivial = int(np.argmin(np.abs(values)))
     return Spinning(
         model=model,
         unknowns=y,
         rate=rate,
-        residual=float(np.abs(left).max() / np.abs(rate * dragged).max()),
-        exponents=np.delete(values, own),
-        trivial=complex(values[own]),
+        residual=float(np.abs(residual).max() / np.abs(rate * dragged).max()),
+        exponents=np.delete(values, trivial),
+        trivial=complex(values[trivial]),
     )
 
 
 def rotating_spectrum(model: Model, y: Array, rate: float) -> ComplexArray:
-    """Return the exponents of disturbances of a spinning state, seen in its own frame.
+    """Return the exponents of disturbances of a spinning state in its own frame.
 
     Parameters
     ----------

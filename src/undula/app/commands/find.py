@@ -3,11 +3,11 @@
 from typing import Any
 
 from undula.analysis.observables.shapes import Range
-from undula.analysis.solvers.equilibrium import Equilibrium
 from undula.analysis.solvers.state_kinds import Solved, extrapolate, kind_by_name, with_error
 from undula.analysis.states.extrapolation import Converged, links_are_body
+from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
-from undula.analysis.states.records import NotFound, Spinning
+from undula.analysis.states.records import Equilibrium, Spinning
 from undula.app.commands.find_start import Beginning
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, CURE
@@ -81,22 +81,22 @@ def state_answer(state: Solved) -> dict[str, Any]:
     }
     if isinstance(state, Spinning | Equilibrium):
         steady = {
-            "bending_energy": state.bending_energy,
-            "tip_radius": state.tip_radius,
-            "tip_height": state.tip_height,
+            "bending_energy": state.bending_energy.mean,
+            "tip_radius": state.tip_radius.mean,
+            "tip_height": state.tip_height.mean,
         }
         if isinstance(state, Equilibrium):
             return shared | {"kind": "equilibrium"} | steady
         return shared | {"kind": "spinning"} | steady | {"trivial_rate": abs(state.trivial)}
     swinging = {
-        "bending_energy": _range(state.energy),
+        "bending_energy": _range(state.bending_energy),
         "tip_radius": _range(state.tip_radius),
         "tip_height": _range(state.tip_height),
         "trivial_multiplier_error": max(state.trivial),
     }
     if isinstance(state, Periodic):
         period = {
-            "period": state.duration,
+            "period": state.period,
             "turn": state.angle,
             "time_error": state.time_error,
         }

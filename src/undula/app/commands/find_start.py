@@ -8,8 +8,8 @@ from pathlib import Path
 import xarray as xr
 
 from undula.analysis.solvers.periodic_search import find_periodic
+from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
-from undula.analysis.states.records import NotFound
 from undula.errors import InputError
 from undula.inputs.build import build_model
 from undula.inputs.input import ModelInput, changed_tables, read_model_input

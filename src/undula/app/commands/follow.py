@@ -6,12 +6,13 @@ from typing import Any
 
 from undula.analysis.linear.straight_branch import StraightBranch, follow_straight
 from undula.analysis.parameters import FORCE, changed, value_of
+from undula.analysis.solvers.branches import follow, follow_from_onset
 from undula.analysis.solvers.refind import limit_of
-from undula.analysis.solvers.state_kinds import follow, follow_from_onset, kind_by_name
+from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.extrapolation import Converged, links_are_body
-from undula.analysis.states.records import NotFound
+from undula.analysis.states.not_found import NotFound
 from undula.app.commands.find import not_found, state_answer
 from undula.errors import InputError
 from undula.interrupts import interruptible

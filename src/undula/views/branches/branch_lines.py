@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from undula.analysis.states.branch import Bifurcation, Branch, State
+from undula.analysis.states.branch import Bifurcation, Branch
+from undula.analysis.states.state import State
 from undula.arrays import Array
 
 
@@ -70,7 +71,7 @@ def branch_line(branch: Branch[Any]) -> BranchLine:
 
 
 def _point(value: float, state: State) -> tuple[float, float, float, float, float]:
-    energy = state.energy
+    energy = state.bending_energy
     return float(value), state.frequency, energy.min, energy.max, energy.mean
 
 
@@ -98,7 +99,9 @@ def _intervals(branch: Branch[Any]) -> list[int]:
 
 
 def _coordinates(states: list[tuple[float, Any]]) -> Array:
-    return np.array([(value, s.frequency, s.energy.mean) for value, s in states]).reshape(-1, 3)
+    return np.array([(value, s.frequency, s.bending_energy.mean) for value, s in states]).reshape(
+        -1, 3
+    )
 
 
 def _turns(counts: NDArray[np.intp], bifurcation: Bifurcation[Any]) -> NDArray[np.bool_]:

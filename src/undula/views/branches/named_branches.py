@@ -1,7 +1,7 @@
 """Branches on a diagram: their names and colours, and their stable and unstable parts."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import cycle, pairwise
 from typing import Any
@@ -23,7 +23,11 @@ _COLOURS = (
     style.ENERGY_COLOUR,
     style.ACTIVE_COLOUR,
 )
-_NAMES = {Spinning: "spinning", Flapping: "planar flapping", Periodic: "modulated"}
+_NAMES: Mapping[type[Any], str] = {
+    Spinning: "spinning",
+    Flapping: "planar flapping",
+    Periodic: "modulated",
+}
 #: Line styles of stable and unstable parts.
 DASHES: Any = {True: "-", False: (0, (2.6, 1.6))}
 #: Width of both.

@@ -1,0 +1,149 @@
+"""Branches of a kind of state along a parameter: from a state on, or from the onset on."""
+
+from collections.abc import Callable
+from typing import Any
+
+from undula.analysis.parameters import FORCE, value_of
+from undula.analysis.solvers.state_kinds import Solved, kind_by_name, kind_of_state
+from undula.analysis.states.along_parameter import model_along, with_unknowns_of
+from undula.analysis.states.branch import Bifurcation, Branch
+from undula.analysis.states.follow_branch import Progress, follow_branch
+from undula.analysis.states.not_found import NotFound, SearchStatus
+from undula.errors import InputError
+from undula.models.model import Model
+from undula.numerics.continuation.arclength import Steps, advance
+
+# Scales of the parameter in the interval that is followed.
+_SCALES = 8.0
+# Arclength between a Hopf point and the first point of a branch.
+_FIRST_ARCLENGTH = 0.03
+
+
+def follow(
+    state: Solved,
+    parameter: str,
+    to: float,
+    *,
+    progress: Progress | None = None,
+    enough: Callable[[Bifurcation[Any]], bool] = lambda _: False,
+    stop: Callable[[], bool] = lambda: False,
+) -> Branch[Any] | NotFound:
+    """Follow a state along a parameter, with its stability and its bifurcations.
+
+    Branches are followed by pseudo-arclength continuation (Keller 1977), through folds.
+
+    Parameters
+    ----------
+    state : Spinning, Flapping, Equilibrium or Periodic
+    parameter : str
+        Name of the parameter, such as "load.force" or "model.drag_ratio".
+    to : float
+        Value of the parameter at which to end. A branch that turns back ends where it began, or
+        where no step succeeds; then it is not complete.
+    progress : callable, optional
+        Called with each value that was reached.
+    enough : callable, optional
+        From a bifurcation to whether the branch may end behind it.
+    stop : callable, optional
+        Returns whether to end with the states so far; the branch is not complete then.
+
+    Returns
+    -------
+    Branch or NotFound
+        The latter if the parameter breaks the rotational symmetry of the body and the same body
+        with directors has no such state.
+
+    Raises
+    ------
+    InputError
+        The parameter does not exist or is a whole number, `to` is the present value or out of
+        range, or bodies on the way have no such states.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(75.0)))
+    >>> branch = un.follow(state, "load.force", 80.0)
+    >>> branch.complete, all(state.stable for state in branch.states)
+    (True, True)
+    """
+    kind, start = kind_of_state(state), value_of(state.model, parameter)
+    model = model_along(state.model, state.kind, parameter, (start, to))
+    if to == start:
+        raise InputError(f"{parameter} is {start} already; give another value to follow to")
+    first = state if model is state.model else with_unknowns_of(model, state, parameter, kind.find)
+    if isinstance(first, NotFound):
+        return first
+    scale = abs(to - start) / _SCALES
+    family = kind.family(first, parameter, scale)
+    return follow_branch(
+        family, kind.unknowns(first), start, to, Steps(scale=scale), progress, enough, stop=stop
+    )
+
+
+def follow_from_onset(
+    model: Model,
+    kind: str,
+    to: float,
+    *,
+    progress: Progress | None = None,
+    stop: Callable[[], bool] = lambda: False,
+) -> Branch[Any] | NotFound:
+    """Follow the branch of a kind of state from the Hopf point of the straight state.
+
+    The first point lies at a small amplitude next to the Hopf point. A subcritical branch goes to
+    smaller forces first and turns in a fold.
+
+    Parameters
+    ----------
+    model : Model
+        Its own force does not matter.
+    kind : {"spinning", "flapping"}
+    to : float
+        The force at which to end [B/L^2], beyond the Hopf force.
+    progress : callable, optional
+        Called with each force that was reached.
+    stop : callable, optional
+        Returns whether to end with the states so far; the branch is not complete then.
+
+    Returns
+    -------
+    Branch or NotFound
+        The latter if the straight state is stable at all forces, or Newton's method finds no first
+        point.
+
+    Raises
+    ------
+    InputError
+        The kind does not exist, or `to` is not beyond the Hopf force.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> branch = un.follow_from_onset(un.Filament(8, un.TipLoad(75.0)), "spinning", 60.0)
+    >>> branch.complete, bool(branch.values[0] < 40.0)
+    (True, True)
+    """
+    solver = kind_by_name(kind)
+    beginning = solver.start(model)
+    if beginning is None:
+        return NotFound(
+            SearchStatus.NO_ONSET, "the straight state stays stable, so that no branch begins at it"
+        )
+    problem, hopf = beginning
+    if to <= hopf.p:
+        raise InputError(f"the branch begins at force {hopf.p:.6g}; give an end beyond it")
+    scale = (to - hopf.p) / _SCALES
+    first = advance(problem, hopf, _FIRST_ARCLENGTH, scale)
+    if first is None:
+        return NotFound(
+            SearchStatus.NOT_CONVERGED,
+            f"Newton's method finds no {kind} next to the Hopf point {hopf.p:.6g}",
+        )
+    problem = problem.referred_to(first.u)
+    state = solver.judge(model, FORCE)(problem, first.u, first.p)
+    family = solver.family(state, FORCE, scale)
+    steps = Steps(first=_FIRST_ARCLENGTH, scale=scale)
+    return follow_branch(
+        family, first.u, first.p, to, steps, progress, start=first, least=0.0, stop=stop
+    )
