@@ -42,22 +42,22 @@ class LinkedRod(ABC):
 
     @property
     def unwrapped(self) -> bool:
-        """Whether angles of joints grow beyond pi, instead of folding there."""
+        """True if angles of joints grow beyond pi, False if they fold there."""
         return isinstance(self.system, UnwrappedRod)
 
     @property
     def axisymmetric(self) -> bool:
-        """Whether a state turned about the axis is a state that moves alike."""
+        """True if a state turned about the axis moves like the state itself, turned."""
         return not isinstance(self.system, DirectedRod)
 
     @property
     def extensible(self) -> bool:
-        """Whether links stretch, instead of keeping their length."""
+        """True if links stretch, False if they keep their length."""
         return bool(self.system.extensible)
 
     @property
     def balances(self) -> bool:
-        """Whether active power, dissipation and energy balance: not without twist moments."""
+        """True if active power, dissipation and energy balance: not without twist moments."""
         return not isinstance(self.system, DirectedRod) or self.system.transmitted != 0.0
 
     @property

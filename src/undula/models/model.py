@@ -56,15 +56,15 @@ class Model(Protocol):
 
     @property
     def axisymmetric(self) -> bool:
-        """Whether a state turned about the axis is a state that moves alike."""
+        """True if a state turned about the axis moves like the state itself, turned."""
 
     @property
     def extensible(self) -> bool:
-        """Whether links stretch, instead of keeping their length."""
+        """True if links stretch, False if they keep their length."""
 
     @property
     def balances(self) -> bool:
-        """Whether active power, dissipation and energy balance: not without twist moments."""
+        """True if active power, dissipation and energy balance: not without twist moments."""
 
     @property
     def load(self) -> Load:
@@ -101,7 +101,7 @@ class Model(Protocol):
 
     @property
     def unwrapped(self) -> bool:
-        """Whether angles of joints grow beyond pi, instead of folding there."""
+        """True if angles of joints grow beyond pi, False if they fold there."""
 
     @property
     def position_mask(self) -> Array:

@@ -16,6 +16,7 @@ from undula.analysis.solvers import branches
 from undula.analysis.solvers.branches import follow
 from undula.analysis.solvers.equilibrium import find_equilibrium
 from undula.analysis.solvers.spinning import find_spinning
+from undula.analysis.solvers.state_kinds import Kind
 from undula.analysis.solvers.thresholds import threshold_curve
 from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import TurningShape

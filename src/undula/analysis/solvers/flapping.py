@@ -180,7 +180,7 @@ def _shooting(model: Model, parameter: str) -> Shooting:
 
 
 class _Continuous(Shooting):
-    """Shots that count full turns of joints from the start of the motion, where there are none.
+    """Shots that count full turns of joints from the start of the motion, which has none.
 
     Another motion, however close, may have other full turns at the same instants.
     """

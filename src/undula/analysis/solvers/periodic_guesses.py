@@ -1,7 +1,7 @@
-"""Where a run says that a periodic motion is: its last shape, the period after which it comes back.
+"""Guesses of a periodic motion from a run: its last shape and the period of its recurrence.
 
-The period is that of the recurrence of its shape, or the one that it settled with. Twice that is a
-guess as well, since next to a period doubling shapes come back nearly after half.
+The period is that of the recurrence of the shape, or the one with which the run settled. Twice each
+period is a further guess, since next to a period doubling shapes nearly recur after half.
 """
 
 import json
@@ -18,15 +18,15 @@ from undula.analysis.regimes.recurrence import Recurrence, recurrence
 from undula.analysis.runs.run import Run
 from undula.arrays import Instants, Nodes, Shapes
 
-# Periods that differ by less than this share are one: those of a settled run agree to 1e-4.
-_SAME = 1e-2
-# Verdicts on shapes that do not change, or come to nothing.
-_UNCHANGED = (STRAIGHT, "spinning")
+# Relative difference below which two periods are the same; those of a settled run agree to 1e-4.
+_PERIOD_DIFFERENCE = 1e-2
+# Verdicts on runs whose shape does not change, or decays.
+_CONSTANT_SHAPES = (STRAIGHT, "spinning")
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What the late part of a run shows.
+    """The late part of a run, with its verdict.
 
     Attributes
     ----------
@@ -35,10 +35,11 @@ class Seen:
     nodes : ndarray, shape (m, N + 1, 3)
         Positions [L].
     verdict : str
+        Name of the motion.
     period : float or None
-        Time after which the run repeats itself [T], if it has settled so.
+        Period of the recurrence with which the run settled [T], None if it did not.
     turn_rate : float
-        Rate of turning about the axis [cycles/T], in the mean.
+        Mean rate of turning about the axis [cycles/T].
     """
 
     time: Instants
@@ -49,15 +50,16 @@ class Seen:
 
     @classmethod
     def of(cls, run: Run | xr.Dataset) -> Self:
-        """Return what a run shows, as it was computed or as it was stored."""
+        """Return the late part of a run, computed or stored."""
         if isinstance(run, Run):
-            told, late = run.summary(), run.shown
-            return cls(late.time, late.nodes, *_told(told))
-        told = json.loads(run.attrs["summary"])
+            late = run.shown
+            return cls(late.time, late.nodes, *_periodicity(run.summary()))
+        summary = json.loads(run.attrs["summary"])
         prefix = "close_" if "close_time" in run else ""
-        time = run[f"{prefix}time"].values
-        late_from = int(np.searchsorted(time, told["window"][0] - 1e-9 * abs(told["window"][0])))
-        return cls(time[late_from:], run[f"{prefix}nodes"].values[late_from:], *_told(told))
+        time, start = run[f"{prefix}time"].values, summary["window"][0]
+        first = int(np.searchsorted(time, start - 1e-9 * abs(start)))
+        nodes = run[f"{prefix}nodes"].values[first:]
+        return cls(time[first:], nodes, *_periodicity(summary))
 
     @property
     def last(self) -> Nodes:
@@ -72,9 +74,16 @@ class Seen:
 
 @dataclass(frozen=True)
 class Guess:
-    """A time after which a shape comes back [T], turned by an angle [rad].
+    """A period of a shape up to a turn.
 
-    With it comes the number of maxima of the displacement in that time.
+    Attributes
+    ----------
+    duration : float
+        Time after which the shape recurs [T].
+    angle : float
+        Angle by which it has turned then [rad].
+    maxima : int
+        Number of maxima of the displacement in that time, 0 if it is not known.
     """
 
     duration: float
@@ -83,34 +92,46 @@ class Guess:
 
 
 def guesses_of(seen: Seen, *, axisymmetric: bool) -> tuple[Guess, ...]:
-    """Return the periods that a run may have, the likeliest first; none if it does not repeat.
+    """Return the periods that a run may have, the likeliest first.
 
     Parameters
     ----------
     seen : Seen
     axisymmetric : bool
-        Whether turns about the axis do not count.
+        True if shapes that differ by a turn about the axis are the same.
+
+    Returns
+    -------
+    tuple of Guess
+        Empty if the run does not repeat itself.
     """
-    if seen.verdict in _UNCHANGED:
-        return ()  # what comes back are errors of integration
-    found: list[Guess] = []
-    back = _recurrence(seen, axisymmetric=axisymmetric)
-    if back is not None:
-        found.append(Guess(back.period, back.turn if axisymmetric else 0.0, back.every))
+    if seen.verdict in _CONSTANT_SHAPES:
+        return ()  # only errors of integration recur
+    guesses: list[Guess] = []
+    recurring = _recurrence(seen, axisymmetric=axisymmetric)
+    if recurring is not None:
+        turn = recurring.turn if axisymmetric else 0.0
+        guesses.append(Guess(recurring.period, turn, recurring.every))
     period = seen.period
-    if period and all(abs(period - one.duration) > _SAME * period for one in found):
-        turned = 2.0 * np.pi * seen.turn_rate * period if axisymmetric else 0.0
-        found.append(Guess(period, turned, 1))
-    doubled = [Guess(2.0 * one.duration, 2.0 * one.angle, 2 * one.maxima) for one in found]
-    return (*found, *doubled)
+    if period and all(
+        abs(period - guess.duration) > _PERIOD_DIFFERENCE * period for guess in guesses
+    ):
+        turn = 2.0 * np.pi * seen.turn_rate * period if axisymmetric else 0.0
+        guesses.append(Guess(period, turn, 1))
+    doubled = [
+        Guess(2.0 * guess.duration, 2.0 * guess.angle, 2 * guess.maxima) for guess in guesses
+    ]
+    return (*guesses, *doubled)
 
 
 def _recurrence(seen: Seen, *, axisymmetric: bool) -> Recurrence | None:
-    found = recurrence(seen.time, seen.nodes, axisymmetric) if len(seen.time) > 1 else None
-    return found if found is not None and found.repeats else None
+    if len(seen.time) < 2:
+        return None
+    nearest = recurrence(seen.time, seen.nodes, axisymmetric)
+    return nearest if nearest is not None and nearest.repeats else None
 
 
-def _told(summary: Mapping[str, Any]) -> tuple[str, float | None, float]:
+def _periodicity(summary: Mapping[str, Any]) -> tuple[str, float | None, float]:
     """Return verdict, period and rate of turning of a run's summary."""
     settled = summary["settled"]
     turning = summary["rotation_frequency"] or 0.0

@@ -40,12 +40,12 @@ class Bifurcation(Generic[S]):
 
     @property
     def loses(self) -> bool:
-        """Whether the state is stable before and not after."""
+        """True if the state is stable before and not after."""
         return self.unstable_before == 0 < self.unstable_after
 
     @property
     def gains(self) -> bool:
-        """Whether the state is stable after and not before."""
+        """True if the state is stable after and not before."""
         return self.unstable_after == 0 < self.unstable_before
 
 
@@ -64,7 +64,7 @@ class Branch(Generic[S]):
     bifurcations : tuple of Bifurcation
         Bifurcations between the states.
     complete : bool
-        Whether the branch reached the value that was asked for.
+        True if the branch reached the value that was asked for.
     """
 
     parameter: str

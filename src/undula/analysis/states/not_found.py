@@ -1,11 +1,11 @@
-"""The outcome of a search without a state: a status, what was done, and what to try next."""
+"""The outcome of a search that found no state: status, finding and advice."""
 
 from dataclasses import dataclass
 from enum import Enum
 
 
 class SearchStatus(Enum):
-    """Why a search found nothing; the value says it in words."""
+    """Reasons for which a search finds nothing; the value is a sentence."""
 
     NO_ONSET = "the straight state is stable at all forces, so that no branch begins at it"
     BELOW_ONSET = "the force is below the one at which such states begin"
@@ -24,11 +24,11 @@ class NotFound:
     Attributes
     ----------
     status : SearchStatus
-        Why nothing was found, for programs.
+        The reason, for programs.
     finding : str
-        What was tried and how far it led.
+        The attempt and how far it led.
     advice : str or None
-        What to try next; None if there is nothing to try.
+        The next thing to try; None if there is nothing.
     residual : float or None
         The residual at which the search ended, None if it had nothing to begin from.
     """
@@ -40,7 +40,7 @@ class NotFound:
 
     @property
     def reason(self) -> str:
-        """What was tried, how far it led, and what to try next, in one sentence."""
+        """The attempt, how far it led and the next thing to try, in one sentence."""
         return self.finding if self.advice is None else f"{self.finding}; {self.advice}"
 
     def __bool__(self) -> bool:

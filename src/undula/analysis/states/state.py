@@ -26,7 +26,7 @@ class State(ABC):
     kind : {"spinning", "flapping", "equilibrium", "periodic"}
         Name of the kind of state.
     steady : bool
-        Whether the shape is constant, so that all ranges have equal ends.
+        True if the shape is constant, so that all ranges have equal ends.
     model : Model
     unknowns : ndarray of shape (n,), or (m, n)
         Positions and multipliers of a constant shape, or at m equally spaced instants of a period.
@@ -34,7 +34,7 @@ class State(ABC):
         Time of a cycle [T]: a turn, a beat, or a repetition of the shape up to a turn; infinite at
         rest.
     residual : float
-        What is left of the equations; each kind states its unit.
+        Remainder of the equations at the solution; each kind states its unit.
     exponents : ndarray of shape (k,)
         Growth rates and angular frequencies of disturbances [1/T], by falling real part, without
         the trivial ones.
@@ -62,7 +62,7 @@ class State(ABC):
 
         @property
         def residual(self) -> float:
-            """What is left of the equations."""
+            """Remainder of the equations at the solution."""
 
         @property
         def exponents(self) -> ComplexArray:
@@ -119,7 +119,7 @@ class State(ABC):
 
     @property
     def stable(self) -> bool:
-        """Whether all disturbances decay."""
+        """True if all disturbances decay."""
         return self.leading_rate < 0.0
 
     @property
