@@ -15,7 +15,7 @@ from undula.analysis.solvers.flapping import (
     flapping_unknowns,
 )
 from undula.analysis.solvers.spinning import find_spinning
-from undula.analysis.states.not_found import NotFound
+from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.analysis.states.records import Flapping, Spinning
 from undula.arrays import Array
 from undula.models.model import Model
@@ -255,7 +255,10 @@ def test_nothing_a_run_and_other_links_lead_to_the_same_beat() -> None:
 def test_below_the_onset_there_is_none_and_the_advice_names_the_onset() -> None:
     onset = un.onset(EIGHT, method="discrete")
     assert onset.force is not None
-    told = refused(find_flapping(EIGHT.with_(force=0.8 * onset.force)))
+    nothing = find_flapping(EIGHT.with_(force=0.8 * onset.force))
+    assert isinstance(nothing, NotFound)
+    assert nothing.status is SearchStatus.BELOW_ONSET
+    told = refused(nothing)
     assert f"begins at force {onset.force:.6g}" in told
     assert "does not beat (straight)" in told
 

@@ -17,7 +17,7 @@ from undula.analysis.solvers.branches import follow
 from undula.analysis.solvers.spinning import FORCE, find_spinning
 from undula.analysis.solvers.state_kinds import extrapolate
 from undula.analysis.solvers.thresholds import threshold
-from undula.analysis.states.not_found import NotFound
+from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import TurningShape
 from undula.arrays import Array
@@ -192,7 +192,11 @@ def reason(found: Spinning | NotFound) -> str:
 
 @pytest.mark.parametrize("force", [0.0, 20.0, 36.0])
 def test_below_the_hopf_force_there_is_none_and_the_force_is_told(force: float) -> None:
-    told = reason(find_spinning(MODEL.with_(force=force)))
+    found = find_spinning(MODEL.with_(force=force))
+    told = reason(found)
+    assert isinstance(found, NotFound)
+    assert found.status is SearchStatus.NOT_REACHED
+    assert found.advice is not None
     onset = undula.onset(MODEL, method="discrete").force
     assert f"begins at force {onset:.6g}" in told
     assert "larger force" in told
@@ -209,6 +213,7 @@ def test_a_run_that_has_hardly_begun_is_a_bad_guess() -> None:
     found = find_spinning(MODEL, run)
     assert "let the run settle longer" in reason(found)
     assert isinstance(found, NotFound)
+    assert found.status is SearchStatus.NOT_CONVERGED
     assert found.residual is not None
     assert found.residual > 0.1
 
