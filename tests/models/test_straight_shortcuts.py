@@ -5,8 +5,8 @@ import pytest
 
 from undula import Chain, Filament, InputError, TipLoad, kicked
 from undula.models.given_shapes import pieces
-from undula.models.model import Model
 from undula.models.initial_states import leading_rate
+from undula.models.model import Model
 
 MODELS = [
     *(Filament(n, TipLoad(force)) for n in (4, 7, 20, 40) for force in (0.0, 30.0, 45.0, 200.0)),
