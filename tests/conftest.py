@@ -1,8 +1,12 @@
-"""Settings shared by all tests."""
+"""Settings shared by all tests, and what they run commands with."""
 
 import os
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
+
+from commands import Ask, Asked
 
 # No screen is needed, and none is looked for.
 os.environ.setdefault("MPLBACKEND", "Agg")
@@ -13,3 +17,24 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # The first call of a kernel compiles it, which no deadline per example could allow for.
 settings.register_profile("undula", deadline=None)
 settings.load_profile("undula")
+
+
+@pytest.fixture
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Give an empty folder, which is the working one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def ask(capsys: pytest.CaptureFixture[str]) -> Ask:
+    """Give a function that runs a command in this process."""
+    from undula.app.cli import main
+
+    def run(*words: str | Path) -> Asked:
+        capsys.readouterr()
+        status = main([*map(str, words)])
+        said = capsys.readouterr()
+        return Asked(status, said.out, said.err)
+
+    return run

@@ -4,16 +4,14 @@ import json
 import signal
 import subprocess
 import sys
-import sysconfig
 import time
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
+from commands import PATIENCE, UNDULA, Ask, answer, ended, in_process, refused, started
 from undula.analysis.run_settings import Schedule
 from undula.app.cli import main
 from undula.storage.run_file import load_checkpoint, load_result
@@ -39,13 +37,7 @@ from undula.app.commands import run as running
 running.SAVE_EVERY, running.SAVING_SHARE = 0.05, 1.0
 sys.exit(cli.main())
 """
-#: The kernels may have to be compiled first.
-PATIENCE = 120.0
-
-
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 @pytest.fixture(scope="module")
@@ -64,38 +56,9 @@ def stored(tiny_result: bytes) -> Path:
     return path
 
 
-@pytest.fixture
-def ask(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
-    """Give a function that runs a command and returns exit status, output and messages."""
-
-    def run(*words: str) -> tuple[int, str, str]:
-        capsys.readouterr()
-        status = main(words)
-        said = capsys.readouterr()
-        return status, said.out, said.err
-
-    return run
-
-
-Ask = Callable[..., tuple[int, str, str]]
-
-
-def answer(asked: tuple[int, str, str], status: int = 0) -> dict[str, Any]:
-    """Return the one JSON object that a command has answered with."""
-    assert asked[0] == status, asked[2]
-
-    def refuse(constant: str) -> float:
-        raise AssertionError(f"{constant} is no JSON")
-
-    found = json.loads(asked[1], parse_constant=refuse)
-    assert isinstance(found, dict)
-    return found
-
-
-def started(*words: str) -> subprocess.Popen[str]:
+def eager(*words: str) -> subprocess.Popen[str]:
     """Start a command that stores its result again and again."""
-    command = [sys.executable, "-c", EAGER, *words]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    return started(sys.executable, "-c", EAGER, *words, group=False)
 
 
 def wait_for(path: Path, command: subprocess.Popen[str]) -> None:
@@ -350,20 +313,20 @@ def test_a_movie_that_fails_leaves_the_result_and_says_so(
 
 
 def test_ctrl_c_leaves_a_result_that_can_be_resumed(ask: Ask) -> None:
-    with started("run", *ENDLESS, "--json") as command:
+    with eager("run", *ENDLESS, "--json") as command:
         wait_for(Path("results/run/run.nc"), command)
         command.send_signal(signal.SIGINT)
-        said, told = command.communicate(timeout=PATIENCE)
-    found = answer((command.returncode, said, told), status=3)
+        asked = ended(command)
+    found = answer(asked, status=3)
     assert found["status"] == "interrupted"
-    assert "undula resume results/run/run.nc" in told
+    assert "undula resume results/run/run.nc" in asked.told
     more = answer(ask("resume", found["output"], "--budget", "0.2", "--json"), status=3)
     assert more["time"] > found["time"]
 
 
 @pytest.mark.parametrize("moment", [0.01, 0.15])
 def test_kill_leaves_a_whole_file_at_any_moment(moment: float, ask: Ask) -> None:
-    with started("run", *ENDLESS) as command:
+    with eager("run", *ENDLESS) as command:
         wait_for(Path("results/run/run.nc"), command)
         time.sleep(moment)
         command.kill()
@@ -409,18 +372,13 @@ def test_help_and_version_load_nothing_heavy() -> None:
         " status = main(['--help']) or main(['--version']) or main(['run', '--help']);"
         f" sys.exit(status or ','.join(sorted(set(sys.modules) & set({heavy}))) or 0)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
+    done = in_process(sys.executable, "-c", code)
+    assert (done.status, done.told) == (0, "")
 
 
 def test_the_installed_command_passes_its_status_on() -> None:
-    command = Path(sysconfig.get_path("scripts"), "undula")
-    done = subprocess.run(
-        [command, "run", "--set", "load.forc=1"], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert done.stderr == "undula: load.forc is not a known key; did you mean load.force?\n"
+    asked = in_process(UNDULA, "run", "--set", "load.forc=1")
+    assert refused(asked) == "load.forc is not a known key; did you mean load.force?"
 
 
 def test_a_fault_of_the_program_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,14 +1,11 @@
 """± means one thing: the error against the body that the numbers stand for."""
 
-import json
-from collections.abc import Callable
-
 import pytest
 
 import undula as un
+from commands import Ask, answer, text
 from undula.analysis.linear.stability import method_for_all
 from undula.analysis.solvers.thresholds import Threshold, threshold, threshold_curve
-from undula.app.cli import main
 from undula.terminal.numbers import BODY, LINKS, digits, on_links, told_of, with_error
 
 TWELVE = un.Filament(segments=12, load=un.TipLoad(75.0))
@@ -85,64 +82,54 @@ def test_the_error_on_the_links_is_that_of_the_solver() -> None:
 # ---------------------------------------------------------------- answers
 
 
-@pytest.fixture
-def say(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    def run(*words: str) -> str:
-        assert main(words) == 0
-        return capsys.readouterr().out
-
-    return run
-
-
-Say = Callable[..., str]
 RUN = ["run", "--set", "time.until=0.2", "--set", "start.amplitude=0.3", "--no-movie", "--out"]
 
 
 def test_a_run_says_on_how_many_links_its_numbers_hold(
-    say: Say, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+    ask: Ask, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path_factory.mktemp("runs"))
-    said = say(*RUN, "f", *FEW)
+    said = text(ask(*RUN, "f", *FEW))
     assert "±" not in said
     assert "cycles per T (12 links, solved to " in said
     assert "links           12; `undula find spinning --converge` gives the filament's" in said
-    answer = json.loads(say(*RUN, "g", *FEW, "--json"))
-    assert (answer["links"], answer["error_of"]) == (12, "links")
+    found = answer(ask(*RUN, "g", *FEW, "--json"))
+    assert (found["links"], found["error_of"]) == (12, "links")
     chain = ["--set", "time.until=4", *CHAIN]
-    said = say(*RUN, "h", *chain)
+    said = text(ask(*RUN, "h", *chain))
     assert "± " in said
     assert "(3 links" not in said
 
 
-def test_a_state_has_the_error_of_links_and_solver_together(say: Say) -> None:
+def test_a_state_has_the_error_of_links_and_solver_together(ask: Ask) -> None:
     for kind in ("spinning", "flapping"):
-        found = json.loads(say("find", kind, *FEW, "--json"))
+        found = answer(ask("find", kind, *FEW, "--json"))
         assert (found["error_of"], found["links"]) == ("body", 12)
         assert found["error"] > 100.0 * found["solver_error"] > 0.0
-        chain = json.loads(say("find", kind, *CHAIN, "--json"))
+        chain = answer(ask("find", kind, *CHAIN, "--json"))
         assert chain["error"] == chain["solver_error"] > 0.0
-    assert "12; --converge gives the filament's" in say("find", "spinning", *FEW)
-    assert "converge" not in say("find", "spinning", *CHAIN)
+    assert "12; --converge gives the filament's" in text(ask("find", "spinning", *FEW))
+    assert "converge" not in text(ask("find", "spinning", *CHAIN))
 
 
-def test_a_threshold_tells_both_errors_apart(say: Say) -> None:
-    said = say("threshold", "spinning-lost", *FEW)
+def test_a_threshold_tells_both_errors_apart(ask: Ask) -> None:
+    said = text(ask("threshold", "spinning-lost", *FEW))
     assert " ± " in said.split("; on 12 links ")[0]
     assert "±" not in said.split("; on 12 links ")[1]
     assert "solved to" in said
     assert said.splitlines()[1] == "  --converge gives the filament's"
-    assert "links" not in say("threshold", "onset", *FEW)
-    assert "on 3 links" not in say("threshold", "spinning-lost", *CHAIN)
+    assert "links" not in text(ask("threshold", "onset", *FEW))
+    assert "on 3 links" not in text(ask("threshold", "spinning-lost", *CHAIN))
 
 
-def test_a_bifurcation_of_links_as_they_are_says_so(say: Say) -> None:
+def test_a_bifurcation_of_links_as_they_are_says_so(ask: Ask) -> None:
     words = ["follow", "spinning", "--along"]
-    said = say(*words, "load.force=150:170", *FEW)
+    said = text(ask(*words, "load.force=150:170", *FEW))
     assert "±" not in said
     assert "(12 links, solved to " in said
     assert "; --converge gives the filament's)" in said
-    assert " ± " in say(*words, "load.force=44:48", *CHAIN)
-    weak = say("follow", "straight", "--along", "load.force=30:40", *WEAK)
+    assert " ± " in text(ask(*words, "load.force=44:48", *CHAIN))
+    weak = text(ask("follow", "straight", "--along", "load.force=30:40", *WEAK))
     assert "(12 links; --converge gives the filament's)" in weak
 
 

@@ -1,12 +1,9 @@
 """Signals that ask a program to end: what was computed is kept, one sentence, status 3."""
 
-import json
 import os
 import re
 import signal
-import subprocess
 import sys
-import sysconfig
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,15 +12,12 @@ from typing import Any
 import pytest
 
 import undula as un
-from undula.app.cli import main
+from commands import Ask, answer, ended, in_process, started
 from undula.interrupts import ENDINGS, endings_heard, interruptible
 from undula.storage.ramp_file import load_ramp
 from undula.storage.run_file import load_result
 from undula.terminal.output import INTERRUPTED
 
-SCRIPTS = Path(sysconfig.get_path("scripts"))
-#: Processes may have to compile the kernels first.
-PATIENCE = 300.0
 #: The command, which tells its progress at once and all the time.
 TALKING = """
 import sys
@@ -124,54 +118,49 @@ def test_a_program_that_uses_the_package_keeps_its_own_ways() -> None:
 FEW = ["--set", "model.segments=4", "--set", "time.until=0.01", "--set", "time.samples=20"]
 
 
-def answered(capsys: pytest.CaptureFixture[str]) -> tuple[dict[str, Any], str]:
-    said = capsys.readouterr()
-    return json.loads(said.out), said.err
-
-
 @each_signal
 def test_a_series_of_steps_keeps_its_steps(
     ending: signal.Signals,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    ask: Ask,
 ) -> None:
     # In the moment in which the first step is stored.
     monkeypatch.setattr("undula.app.commands.step._Keeper.__call__", sends(ending, times=2))
     words = ["step", *FEW, "--along", "load.force=10:30:10", "--out", str(tmp_path), "--json"]
-    assert main(words) == 3
-    answer, told = answered(capsys)
-    assert answer["status"] == "interrupted"
-    assert "interrupted after 1 of 3 steps; the same command goes on" in told
+    asked = ask(*words)
+    found = answer(asked, status=3)
+    assert found["status"] == "interrupted"
+    assert "interrupted after 1 of 3 steps; the same command goes on" in asked.told
     assert load_ramp(tmp_path / "steps.nc").sizes["step"] == 1
 
 
 @each_signal
 def test_a_branch_is_told_as_far_as_it_was_followed(
-    ending: signal.Signals, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ending: signal.Signals, monkeypatch: pytest.MonkeyPatch, ask: Ask
 ) -> None:
     send = sends(ending)
     monkeypatch.setattr("undula.analysis.states.follow_branch.unstable", lambda _: send() or 0)
     words = ["follow", "spinning", "--set", "model.segments=4", "--along", "load.force=60:200"]
-    assert main([*words, "--json"]) == 3
-    answer, told = answered(capsys)
-    assert answer["status"] == "interrupted"
-    assert 2 <= len(answer["points"]) <= 3
-    assert told.endswith(
+    asked = ask(*words, "--json")
+    found = answer(asked, status=3)
+    assert found["status"] == "interrupted"
+    assert 2 <= len(found["points"]) <= 3
+    assert asked.told.endswith(
         "undula: interrupted; what was found until then is told, the same command begins anew\n"
     )
 
 
 def test_a_curve_of_thresholds_is_told_as_far_as_it_is_known(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, ask: Ask, tmp_path: Path
 ) -> None:
     monkeypatch.setattr("undula.analysis.solvers.thresholds.onset", _and_send(signal.SIGTERM))
     words = ["threshold", "onset", "--along", "model.drag_ratio=1:2:5", "--json"]
-    assert main([*words, "--plot", str(tmp_path / "curve.png")]) == 3
-    answer, told = answered(capsys)
-    assert answer["status"] == "interrupted"
-    assert [one["model.drag_ratio"] for one in answer["thresholds"]] == [1.0]
-    assert "what was found until then is told" in told
+    asked = ask(*words, "--plot", str(tmp_path / "curve.png"))
+    found = answer(asked, status=3)
+    assert found["status"] == "interrupted"
+    assert [one["model.drag_ratio"] for one in found["thresholds"]] == [1.0]
+    assert "what was found until then is told" in asked.told
     assert (tmp_path / "curve.png").exists()
 
 
@@ -188,21 +177,21 @@ def _and_send(ending: signal.Signals) -> Any:
 def test_exponents_that_are_stopped_leave_the_run_and_say_so(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    ask: Ask,
 ) -> None:
     monkeypatch.setattr("undula.analysis.regimes.lyapunov._directions", lambda *_: send() or 1)
     send = sends(signal.SIGTERM)
-    assert main(_spinning(tmp_path, "--lyapunov")) == 3
-    answer, told = answered(capsys)
-    assert answer["status"] == "done"
-    assert answer["lyapunov"] is None
-    assert answer["without_lyapunov"] == "they were interrupted"
-    assert "no Lyapunov exponents: they were interrupted; the run without them is in" in told
+    asked = ask(*_spinning(tmp_path, "--lyapunov"))
+    found = answer(asked, status=3)
+    assert found["status"] == "done"
+    assert found["lyapunov"] is None
+    assert found["without_lyapunov"] == "they were interrupted"
+    assert "no Lyapunov exponents: they were interrupted; the run without them is in" in asked.told
     assert load_result(tmp_path / "run.nc").attrs["summary"]
 
 
 def test_exponents_heed_the_budget_and_show_how_far_they_are(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ask: Ask
 ) -> None:
     monkeypatch.setattr("undula.terminal.meter.SECONDS_BETWEEN_LINES", 0.0)
     # What takes no time without this takes longer than the budget at the third block.
@@ -210,11 +199,11 @@ def test_exponents_heed_the_budget_and_show_how_far_they_are(
     monkeypatch.setattr(
         "undula.analysis.regimes.lyapunov._directions", lambda *_: _slow(next(blocks))
     )
-    assert main(_spinning(tmp_path, "--lyapunov", "--budget", "4")) == 3
-    answer, told = answered(capsys)
-    assert answer["without_lyapunov"] == "they were out of their budget of time"
-    assert "Lyapunov exponents, 1% done" in told
-    assert answer["seconds"] < 8.0
+    asked = ask(*_spinning(tmp_path, "--lyapunov", "--budget", "4"))
+    found = answer(asked, status=3)
+    assert found["without_lyapunov"] == "they were out of their budget of time"
+    assert "Lyapunov exponents, 1% done" in asked.told
+    assert found["seconds"] < 8.0
 
 
 def _slow(block: int) -> int:
@@ -229,26 +218,18 @@ def _spinning(out: Path, *more: str) -> list[str]:
 
 
 def test_a_command_without_a_result_says_that_it_was_interrupted(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, ask: Ask
 ) -> None:
     def find(*_: object, **__: object) -> None:
         signal.raise_signal(signal.SIGTERM)
 
     monkeypatch.setattr("undula.app.commands.find.find", find)
-    assert main(["find", "spinning", "--set", "model.segments=4"]) == 130
-    said = capsys.readouterr()
-    assert (said.out, said.err.count("\n")) == ("", 1)
-    assert said.err == "undula: interrupted before there was a result; nothing has been kept\n"
+    asked = ask("find", "spinning", "--set", "model.segments=4")
+    told = "undula: interrupted before there was a result; nothing has been kept\n"
+    assert asked == (130, "", told)
 
 
 # ---------------------------------------------------------------- real processes
-
-
-def ends_in_order(command: subprocess.Popen[str]) -> tuple[dict[str, Any], str]:
-    said, told = command.communicate(timeout=PATIENCE)
-    assert command.returncode == 3, told
-    assert "Traceback" not in told
-    return json.loads(said), told
 
 
 @pytest.mark.parametrize(
@@ -257,33 +238,20 @@ def ends_in_order(command: subprocess.Popen[str]) -> tuple[dict[str, Any], str]:
 def test_a_running_command_keeps_its_result(ending: signal.Signals, tmp_path: Path) -> None:
     keys = ("model.segments=4", "load.force=200", "time.until=1000", "time.samples=200001")
     words = [word for key in keys for word in ("--set", key)]
-    command = subprocess.Popen(
-        [
-            SCRIPTS / "python",
-            "-c",
-            TALKING,
-            "run",
-            *words,
-            "--no-movie",
-            "--out",
-            tmp_path,
-            "--json",
-        ],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+    run = ["run", *words, "--no-movie", "--out", tmp_path, "--json"]
+    command = started(sys.executable, "-c", TALKING, *run)
     assert command.stderr is not None
     while not re.search(r"t = 0\.[1-9]", command.stderr.readline()):
         assert command.poll() is None
     # As time limits do it: to the process, and once more to its group.
     command.send_signal(ending)
     os.killpg(command.pid, ending)
-    answer, told = ends_in_order(command)
-    assert answer["status"] == "interrupted"
-    assert f"go on with: undula resume {tmp_path / 'run.nc'}" in told
-    assert float(load_result(tmp_path / "run.nc")["time"][-1]) == answer["time"] > 0.0
+    asked = ended(command)
+    found = answer(asked, status=3)
+    assert found["status"] == "interrupted"
+    assert "Traceback" not in asked.told
+    assert f"go on with: undula resume {tmp_path / 'run.nc'}" in asked.told
+    assert float(load_result(tmp_path / "run.nc")["time"][-1]) == found["time"] > 0.0
 
 
 def test_ctrl_c_while_the_program_is_imported_ends_it_quietly() -> None:
@@ -297,5 +265,4 @@ def test_ctrl_c_while_the_program_is_imported_ends_it_quietly() -> None:
         "from undula.app.start import main\n"
         "sys.exit(main())\n"
     )
-    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (INTERRUPTED, "", "")
+    assert in_process(sys.executable, "-c", program) == (INTERRUPTED, "", "")

@@ -1,8 +1,6 @@
 """The command `undula stability`: its answers, what they agree with, and what it refuses."""
 
-import json
 import math
-from collections.abc import Callable
 from itertools import product
 from pathlib import Path
 from typing import Any, cast
@@ -11,6 +9,7 @@ import numpy as np
 import pytest
 
 import undula as un
+from commands import Ask, Asked, answer
 from undula.app.cli import main
 
 #: Forces at which nothing coincides, and slopes of a linear load.
@@ -27,40 +26,10 @@ density = [1, 1, -0.4, -0.4]
 WEAK = ["--set", "model.inextensibility=weak"]
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
-@pytest.fixture
-def ask(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
-    """Give a function that asks about stability: exit status, output and messages."""
-
-    def run(*words: str) -> tuple[int, str, str]:
-        capsys.readouterr()
-        status = main(["stability", *words])
-        said = capsys.readouterr()
-        return status, said.out, said.err
-
-    return run
-
-
-Ask = Callable[..., tuple[int, str, str]]
-
-
-def answer(asked: tuple[int, str, str], status: int = 0) -> dict[str, Any]:
-    """Return the one JSON object that the command has answered with."""
-    assert asked[0] == status, asked[2]
-
-    def refuse(constant: str) -> float:
-        raise AssertionError(f"{constant} is no JSON")
-
-    found = json.loads(asked[1], parse_constant=refuse)
-    assert isinstance(found, dict)
-    return found
-
-
-def refused(asked: tuple[int, str, str]) -> str:
+def refused(asked: Asked) -> str:
     """Return the sentence with which a question is refused, having checked how it is told."""
     found = answer(asked, status=2)
     assert found.keys() == {"status", "error"}
@@ -75,7 +44,7 @@ def linear(slope: float, force: float = 75.0) -> un.Filament:
 
 
 def test_a_single_case_is_answered_with_what_python_computes(ask: Ask) -> None:
-    found = answer(ask("--set", "load.force=60", "--json"))
+    found = answer(ask("stability", "--set", "load.force=60", "--json"))
     filament = un.Filament(segments=40, load=un.TipLoad(60.0))
     onset, spectrum = un.onset(filament), un.spectrum(filament)
     assert onset.hopf is not None
@@ -119,7 +88,7 @@ def test_a_single_case_is_answered_with_what_python_computes(ask: Ask) -> None:
 
 
 def test_the_onset_of_the_tip_load_is_the_published_one(ask: Ask) -> None:
-    found = answer(ask("--json"))
+    found = answer(ask("stability", "--json"))
     # Both as printed: Beck (1952), by way of Langthjem & Sugiyama (2000), and Ling, Guo & Kanso
     # (2018), who computed with assumed modes.
     assert found["oscillatory_force"] == pytest.approx(20.05, abs=0.005)
@@ -128,8 +97,8 @@ def test_the_onset_of_the_tip_load_is_the_published_one(ask: Ask) -> None:
 
 @pytest.mark.parametrize("method", ["spectral", "modes", "discrete"])
 def test_every_method_is_reached_by_its_option_and_by_its_key(method: str, ask: Ask) -> None:
-    short = answer(ask("--method", method, "--json"))
-    assert short == answer(ask("--set", f"stability.method={method}", "--json"))
+    short = answer(ask("stability", "--method", method, "--json"))
+    assert short == answer(ask("stability", "--set", f"stability.method={method}", "--json"))
     assert short["method"] == method
     onset = un.onset(un.Filament(segments=40, load=un.TipLoad(75.0)), method=cast(Any, method))
     assert short["hopf_force"] == onset.force
@@ -137,13 +106,17 @@ def test_every_method_is_reached_by_its_option_and_by_its_key(method: str, ask: 
 
 def test_links_that_are_no_continuum_are_judged_as_they_are(ask: Ask) -> None:
     few = ["--set", "model.segments=6"]
-    assert answer(ask(*WEAK, *few, "--json"))["method"] == "discrete"
-    assert "use method = 'discrete'" in refused(ask(*WEAK, "--method", "spectral", "--json"))
-    assert "use method = 'discrete'" in refused(ask(*WEAK, "--method", "modes", "--json"))
+    assert answer(ask("stability", *WEAK, *few, "--json"))["method"] == "discrete"
+    assert "use method = 'discrete'" in refused(
+        ask("stability", *WEAK, "--method", "spectral", "--json")
+    )
+    assert "use method = 'discrete'" in refused(
+        ask("stability", *WEAK, "--method", "modes", "--json")
+    )
 
 
 def test_forces_give_the_leading_eigenvalue_at_each(ask: Ask) -> None:
-    found = answer(ask("--forces", FORCES, "--json"))
+    found = answer(ask("stability", "--forces", FORCES, "--json"))
     growth = un.growth_curve(linear(0.0).with_(load=un.TipLoad(75.0)), [0.0, 20.0, 40.0, 60.0])
     assert found["points"] == [
         {"force": force, "rate": rate, "frequency": frequency, "error": error}
@@ -155,12 +128,12 @@ def test_forces_give_the_leading_eigenvalue_at_each(ask: Ask) -> None:
 
 
 def test_forces_may_be_listed(ask: Ask) -> None:
-    points = answer(ask("--forces", "40,10", "--json"))["points"]
+    points = answer(ask("stability", "--forces", "40,10", "--json"))["points"]
     assert [point["force"] for point in points] == [40.0, 10.0]
 
 
 def test_a_parameter_gives_the_thresholds_along_it(ask: Ask) -> None:
-    found = answer(ask(*LINEAR, "--along", f"load.slope={SLOPES}", "--json"))
+    found = answer(ask("stability", *LINEAR, "--along", f"load.slope={SLOPES}", "--json"))
     curve = un.critical_curve(linear(0.3), "load.slope", [-1.0, 0.0, 1.0])
     # What is swept over is not told of the load.
     assert (found["parameter"], found["load"]) == ("load.slope", "linear load")
@@ -177,8 +150,10 @@ def test_a_parameter_gives_the_thresholds_along_it(ask: Ask) -> None:
 
 
 def test_a_threshold_on_a_curve_is_that_of_the_single_case(ask: Ask) -> None:
-    (curve,) = answer(ask(*LINEAR, "--along", "load.slope=0.5", "--json"))["thresholds"]
-    single = answer(ask(*LINEAR, "--set", "load.slope=0.5", "--json"))
+    (curve,) = answer(ask("stability", *LINEAR, "--along", "load.slope=0.5", "--json"))[
+        "thresholds"
+    ]
+    single = answer(ask("stability", *LINEAR, "--set", "load.slope=0.5", "--json"))
     # The single case looks for later crossings too, with a larger pencil: same root, other
     # round-off.
     for key in ("hopf_force", "hopf_frequency", "oscillatory_force"):
@@ -187,7 +162,7 @@ def test_a_threshold_on_a_curve_is_that_of_the_single_case(ask: Ask) -> None:
 
 def test_forces_and_a_parameter_give_a_map(ask: Ask) -> None:
     words = ["--along", f"load.slope={SLOPES}", "--forces", "10,50"]
-    found = answer(ask(*LINEAR, *words, "--json"))
+    found = answer(ask("stability", *LINEAR, *words, "--json"))
     points = found["points"]
     places = [(point["load.slope"], point["force"]) for point in points]
     assert places == list(product([-1.0, 0.0, 1.0], [10.0, 50.0]))
@@ -204,7 +179,7 @@ def test_the_printed_time_divides_rates_and_frequencies_and_no_force(
 ) -> None:
     words = ["--set", f"model.drag_ratio={drag_ratio}", "--json"]
     paper = ["--set", "stability.paper_time=true"]
-    ours, theirs = answer(ask(*words)), answer(ask(*words, *paper))
+    ours, theirs = answer(ask("stability", *words)), answer(ask("stability", *words, *paper))
     assert (ours["paper_time"], theirs["paper_time"]) == (False, True)
     for key in ("oscillatory_force", "hopf_force", "error"):
         assert theirs[key] == ours[key]
@@ -213,7 +188,9 @@ def test_the_printed_time_divides_rates_and_frequencies_and_no_force(
     for mine, printed in zip(ours["spectrum"], theirs["spectrum"], strict=True):
         assert printed["rate"] == pytest.approx(mine["rate"] / drag_ratio, rel=1e-14)
         assert printed["frequency"] == pytest.approx(mine["frequency"] / drag_ratio, rel=1e-14)
-    ours, theirs = (answer(ask(*words, *more, "--forces", "50")) for more in ([], paper))
+    ours, theirs = (
+        answer(ask("stability", *words, *more, "--forces", "50")) for more in ([], paper)
+    )
     assert theirs["points"][0]["rate"] == pytest.approx(ours["points"][0]["rate"] / drag_ratio)
 
 
@@ -223,43 +200,43 @@ def test_one_file_serves_a_run_and_a_question_of_stability(ask: Ask) -> None:
         "[time]\nuntil = 0.001\nsamples = 3\n[stability]\nmethod = 'modes'\n"
     )
     assert main(["run", "both.toml", "--no-movie"]) == 0
-    found = answer(ask("both.toml", "--json"))
+    found = answer(ask("stability", "both.toml", "--json"))
     assert (found["method"], found["load"]) == ("modes", "tip force 60")
 
 
 @pytest.mark.parametrize("change", ["start.seed=3", "time.until=2"])
 def test_changes_of_a_table_that_is_not_read_are_refused(change: str, ask: Ask) -> None:
     Path("run.toml").write_text("[start]\nseed = 7\n")
-    told = refused(ask("run.toml", "--set", change, "--json"))
+    told = refused(ask("stability", "run.toml", "--set", change, "--json"))
     assert f"--set {change.split('.')[0]}" in told
     assert "it reads [model], [load], [stability]" in told
 
 
 def test_a_mistake_in_a_table_of_another_command_is_told(ask: Ask) -> None:
     Path("run.toml").write_text("[time]\nuntill = 2\n")
-    assert "did you mean time.until?" in refused(ask("run.toml", "--json"))
+    assert "did you mean time.until?" in refused(ask("stability", "run.toml", "--json"))
 
 
 def test_a_filament_that_never_loses_stability_is_told_to_be_stable(ask: Ask) -> None:
     Path("pulled.toml").write_text(PULLED)
-    found = answer(ask("pulled.toml", "--json"))
+    found = answer(ask("stability", "pulled.toml", "--json"))
     for key in ("hopf_force", "hopf_frequency", "hopf_growth_slope", "error", "oscillatory_force"):
         assert found[key] is None, key
     assert found["later"] == []
     assert found["searched_to"] >= 100.0
     assert found["reason"].startswith("straight and stable at every force up to ")
-    status, said, _ = ask("pulled.toml")
+    status, said, _ = ask("stability", "pulled.toml")
     assert status == 0
     assert found["reason"] in said
     assert "None" not in said
     # Exponentially slow, where twelve decimals would show nothing but noughts.
-    said = ask("pulled.toml", "--set", "load.force=300")[1]
+    said = ask("stability", "pulled.toml", "--set", "load.force=300")[1]
     assert any("rate -" in line and "e-" in line.split("±")[0] for line in said.splitlines())
 
 
 def test_a_table_from_a_file_is_the_profile_that_it_samples(ask: Ask) -> None:
     Path("half.toml").write_text('[load]\nprofile = "table"\ns = [0, 0.5, 1]\ndensity = [4, 3, 2]')
-    found = answer(ask("half.toml", "--json"))
+    found = answer(ask("stability", "half.toml", "--json"))
     assert found["load"] == "table force 75 (3 points)"
     # Falls from 4/3 to 2/3 of its mean.
     same = un.onset(linear(-1.0 / 3.0))
@@ -283,7 +260,7 @@ BAD_TABLES = {
 def test_a_table_that_is_no_load_is_refused(text: str, ask: Ask) -> None:
     s = "" if "s = " in text else "\ns = [0, 0.5, 1]"
     Path("bad.toml").write_text(f'[load]\nprofile = "table"\n{text}{s}\n')
-    assert BAD_TABLES[text] in refused(ask("bad.toml", "--json"))
+    assert BAD_TABLES[text] in refused(ask("stability", "bad.toml", "--json"))
 
 
 #: What is asked, and a part of what is said to it.
@@ -327,8 +304,8 @@ def test_bad_input_gets_one_sentence_and_with_json_one_object(
 ) -> None:
     Path("file").touch()
     Path("folder.png").mkdir()
-    assert cure in refused(ask(*words.split(), "--json"))
-    status, said, told = ask(*words.split())
+    assert cure in refused(ask("stability", *words.split(), "--json"))
+    status, said, told = ask("stability", *words.split())
     assert (status, said, len(told.splitlines())) == (2, "", 1)
     assert cure in told
     assert {path.name for path in Path().iterdir()} == {"file", "folder.png"}
@@ -345,11 +322,13 @@ QUESTIONS = {
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_every_answer_can_be_drawn_and_says_where(question: str, ask: Ask) -> None:
     words = QUESTIONS[question]
-    status, said, _ = ask(*words, "--plot", "new/figure.png")
+    status, said, _ = ask("stability", *words, "--plot", "new/figure.png")
     assert status == 0
     assert said.splitlines()[-1].split() == ["figure", "new/figure.png"]
     assert Path("new/figure.png").read_bytes().startswith(b"\x89PNG")
-    assert answer(ask(*words, "--plot", "figure.svg", "--json"))["figure"] == "figure.svg"
+    assert (
+        answer(ask("stability", *words, "--plot", "figure.svg", "--json"))["figure"] == "figure.svg"
+    )
     assert "<svg" in Path("figure.svg").read_text()
 
 
@@ -361,15 +340,17 @@ def test_a_figure_replaces_nothing_unless_told_to(
         patched.setattr(
             "undula.app.commands.stability.ask", lambda *_: pytest.fail("it was computed")
         )
-        assert "--overwrite" in refused(ask("--forces", "10", "--plot", "mine.pdf", "--json"))
+        assert "--overwrite" in refused(
+            ask("stability", "--forces", "10", "--plot", "mine.pdf", "--json")
+        )
     assert Path("mine.pdf").read_text() == "mine"
-    assert ask("--forces", "10,20", "--plot", "mine.pdf", "--overwrite")[0] == 0
+    assert ask("stability", "--forces", "10,20", "--plot", "mine.pdf", "--overwrite")[0] == 0
     assert Path("mine.pdf").read_bytes().startswith(b"%PDF")
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_people_read_aligned_lines_of_plain_numbers(question: str, ask: Ask) -> None:
-    status, said, told = ask(*QUESTIONS[question])
+    status, said, told = ask("stability", *QUESTIONS[question])
     assert (status, told) == (0, "")
     head, *lines = said.splitlines()
     swept = {"onset": "tip force 75", "growth": "tip load"}.get(question, "linear load")
@@ -381,7 +362,7 @@ def test_people_read_aligned_lines_of_plain_numbers(question: str, ask: Ask) -> 
 
 
 def test_people_read_what_happens_at_which_force(ask: Ask) -> None:
-    said = ask()[1]
+    said = ask("stability")[1]
     lines = [line.split(maxsplit=2) for line in said.splitlines()[1:]]
     names = [line[:18].rstrip() for line in said.splitlines()[1:]]
     assert [name.strip() for name in names] == [
@@ -391,12 +372,12 @@ def test_people_read_what_happens_at_which_force(ask: Ask) -> None:
     onset = un.onset(un.Filament(segments=40, load=un.TipLoad(75.0)))
     assert f"{onset.force:.10f}" in said
     assert "cycles per T" in lines[2][-1]
-    assert "(T/gamma)" in ask("--set", "stability.paper_time=true")[1]
+    assert "(T/gamma)" in ask("stability", "--set", "stability.paper_time=true")[1]
 
 
 def test_a_table_for_people_holds_the_numbers_of_the_answer(ask: Ask) -> None:
-    rows = [line.split() for line in ask(*QUESTIONS["map"])[1].splitlines()[2:]]
-    points = answer(ask(*QUESTIONS["map"], "--json"))["points"]
+    rows = [line.split() for line in ask("stability", *QUESTIONS["map"])[1].splitlines()[2:]]
+    points = answer(ask("stability", *QUESTIONS["map"], "--json"))["points"]
     told = np.array([[float(cell) for cell in row[:4]] for row in rows])
     keys = ("load.slope", "force", "rate", "frequency")
     # Eight digits are told.
@@ -405,9 +386,11 @@ def test_a_table_for_people_holds_the_numbers_of_the_answer(ask: Ask) -> None:
 
 def test_thresholds_that_do_not_exist_are_told_as_none(ask: Ask) -> None:
     Path("pulled.toml").write_text(PULLED)
-    asked = ask("pulled.toml", "--along", "model.drag_ratio=2")
+    asked = ask("stability", "pulled.toml", "--along", "model.drag_ratio=2")
     assert asked[1].splitlines()[-1].split() == ["2", *["none"] * 5]
-    (found,) = answer(ask("pulled.toml", "--along", "model.drag_ratio=2", "--json"))["thresholds"]
+    (found,) = answer(ask("stability", "pulled.toml", "--along", "model.drag_ratio=2", "--json"))[
+        "thresholds"
+    ]
     assert found["hopf_force"] is None
     assert found["reason"].startswith("straight and stable")
 
@@ -415,7 +398,7 @@ def test_thresholds_that_do_not_exist_are_told_as_none(ask: Ask) -> None:
 def test_progress_is_told_apart_from_the_answer(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("undula.terminal.meter.SECONDS_BETWEEN_LINES", 0.0)
     for question, task in (("thresholds", "thresholds"), ("map", "growth rates")):
-        asked = ask(*QUESTIONS[question], "--json")
+        asked = ask("stability", *QUESTIONS[question], "--json")
         answer(asked)
         told = asked[2].splitlines()
         assert len(told) == 3
@@ -424,7 +407,7 @@ def test_progress_is_told_apart_from_the_answer(ask: Ask, monkeypatch: pytest.Mo
 
 
 def test_a_filament_without_a_force_has_the_rates_of_a_free_beam(ask: Ask) -> None:
-    found = answer(ask("--set", "load.force=0", "--json"))
+    found = answer(ask("stability", "--set", "load.force=0", "--json"))
     # cos a cosh a = -1; roots as in any table of beam functions (e.g. Young & Felgar 1949).
     roots = (1.87510407, 4.69409113, 7.85475744, 10.99554073)
     rates = [each["rate"] for each in found["spectrum"]]

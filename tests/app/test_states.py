@@ -1,16 +1,13 @@
 """The commands `undula find`, `follow` and `threshold`: what they answer, draw and refuse."""
 
-import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import undula as un
+from commands import Ask, Asked, answer
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning
-from undula.app.cli import main
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 FEW = ["--set", "model.segments=8"]
@@ -33,9 +30,7 @@ THRESHOLD = {
 OF = {"error_of", "links"}
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -45,35 +40,7 @@ def _compiled() -> None:
     assert un.find_flapping(EIGHT)
 
 
-@pytest.fixture
-def ask(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
-    """Give a function that runs a command: exit status, output and messages."""
-
-    def run(*words: str) -> tuple[int, str, str]:
-        capsys.readouterr()
-        status = main(words)
-        said = capsys.readouterr()
-        return status, said.out, said.err
-
-    return run
-
-
-Ask = Callable[..., tuple[int, str, str]]
-
-
-def answer(asked: tuple[int, str, str], status: int = 0) -> dict[str, Any]:
-    """Return the one JSON object that a command has answered with."""
-    assert asked[0] == status, asked[2]
-
-    def refuse(constant: str) -> float:
-        raise AssertionError(f"{constant} is no JSON")
-
-    found = json.loads(asked[1], parse_constant=refuse)
-    assert isinstance(found, dict)
-    return found
-
-
-def refused(asked: tuple[int, str, str]) -> str:
+def refused(asked: Asked) -> str:
     """Return the sentence with which a question is refused, having checked how it is told."""
     found = answer(asked, status=2)
     assert found.keys() == {"status", "error"}

@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import undula as un
+from commands import Ask, answer, text
 from refusal import complaint
 from undula.analysis.states.branch import Branch
 from undula.analysis.states.not_found import NotFound
@@ -53,27 +53,13 @@ COMMANDS = {
 }
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
-@pytest.fixture
-def ask(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Give a function that asks something of the chain of two links and returns what is said."""
-
-    def run(*words: str) -> str:
-        capsys.readouterr()
-        # Of two settings of one key the later one holds.
-        status = main([words[0], *CHAIN, *words[1:]])
-        said = capsys.readouterr()
-        assert status == 0, said.err
-        return said.out
-
-    return run
-
-
-Ask = Callable[..., str]
+def said(ask: Ask, command: str, *words: str) -> str:
+    """Return what a command says of the chain of two links."""
+    # Of two settings of one key the later one holds.
+    return text(ask(command, *CHAIN, *words))
 
 
 def beside(force: float, links: int) -> Any:
@@ -82,8 +68,8 @@ def beside(force: float, links: int) -> Any:
     return pytest.approx({"K/l": force / links, "B/L^2": force * links}, rel=1e-15)
 
 
-def answer(ask: Ask, *words: str) -> dict[str, Any]:
-    return json.loads(ask(*words, "--json"))
+def answered(ask: Ask, command: str, *words: str) -> dict[str, Any]:
+    return answer(ask(command, *CHAIN, *words, "--json"))
 
 
 # ---------------------------------------------------------------- answers and texts
@@ -91,7 +77,7 @@ def answer(ask: Ask, *words: str) -> dict[str, Any]:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_answer_of_a_chain_holds_the_names_of_its_units(name: str, ask: Ask) -> None:
-    assert answer(ask, *COMMANDS[name][0])["units"] == UNITS
+    assert answered(ask, *COMMANDS[name][0])["units"] == UNITS
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -99,7 +85,7 @@ def test_every_text_of_a_chain_tells_its_force_and_its_time_below_the_heading(
     name: str, ask: Ask
 ) -> None:
     words, energies = COMMANDS[name]
-    head, second, *lines = ask(*words).splitlines()
+    head, second, *lines = said(ask, *words).splitlines()
     assert head.startswith("chain of 2 links, ")
     assert second.startswith("  force in K/L, T = zeta L^2/K")
     rest = "\n".join([head, *lines])
@@ -113,7 +99,7 @@ def test_every_text_of_a_chain_tells_its_force_and_its_time_below_the_heading(
 def test_a_force_beside_a_chains_own_is_explained_where_it_is_told(ask: Ask) -> None:
     explained = set()
     for name, (words, _) in COMMANDS.items():
-        head, second, *lines = ask(*words).splitlines()
+        head, second, *lines = said(ask, *words).splitlines()
         if any("K/l" in line for line in (head, *lines)):
             assert second.endswith("; l = L/N, B = K l of the filament it stands for"), name
             explained.add(name)
@@ -129,37 +115,37 @@ def test_the_force_that_two_links_bear_is_told_in_all_units(ask: Ask) -> None:
         ("thresholds", rf"\n +2  at force {told} \(Hopf\), "),
         ("curve", r"\n +2 +4 +6 +\S+ +3 +12 +0\.6366"),
     ):
-        assert re.search(line, ask(*COMMANDS[name][0])), name
+        assert re.search(line, said(ask, *COMMANDS[name][0])), name
 
 
 def test_every_force_that_is_answered_has_the_others_beside_it(ask: Ask) -> None:
     # Matrices of two rows: a few roundings on the way to 6 K/L.
     onset_in = pytest.approx({"K/l": 3.0, "B/L^2": 12.0}, rel=1e-12)
-    onset = answer(ask, *COMMANDS["onset"][0])
+    onset = answered(ask, *COMMANDS["onset"][0])
     assert onset["hopf_force"] == pytest.approx(6.0, rel=1e-12)
     assert onset["hopf_force_in"] == onset_in
     # Where the two eigenvalues meet: F^2 - 12 F + 32 = 0.
     assert onset["oscillatory_force_in"] == pytest.approx({"K/l": 2.0, "B/L^2": 8.0}, rel=1e-12)
     assert onset["force_in"] == {"K/l": 4.0, "B/L^2": 16.0}
     for name in ("run", "find"):
-        found = answer(ask, *COMMANDS[name][0])
+        found = answered(ask, *COMMANDS[name][0])
         assert (found["force"], found["force_in"]) == (8.0, {"K/l": 4.0, "B/L^2": 16.0})
-    assert answer(ask, *COMMANDS["threshold"][0])["force_in"] == onset_in
-    curves = answer(ask, *COMMANDS["curve"][0]), answer(ask, *COMMANDS["thresholds"][0])
+    assert answered(ask, *COMMANDS["threshold"][0])["force_in"] == onset_in
+    curves = answered(ask, *COMMANDS["curve"][0]), answered(ask, *COMMANDS["thresholds"][0])
     for curve, key in zip(curves, ("hopf_force_in", "force_in"), strict=True):
         assert [one[key] for one in curve["thresholds"]] == [onset_in, onset_in]
-    (hopf,) = answer(ask, *COMMANDS["straight"][0])["bifurcations"]
+    (hopf,) = answered(ask, *COMMANDS["straight"][0])["bifurcations"]
     assert hopf["force_in"] == onset_in
 
 
 def test_later_crossings_and_bifurcations_of_states_have_theirs(ask: Ask) -> None:
     three = ["--set", "model.links=3"]
     words = ["follow", "spinning", "--along", "load.force=46:47", *three]
-    (torus,) = answer(ask, *words)["bifurcations"]
+    (torus,) = answered(ask, *words)["bifurcations"]
     assert torus["force_in"] == beside(torus["value"], 3)
     told = f"({torus['value'] / 3.0:.6g} K/l or {3.0 * torus['value']:.6g} B/L^2)"
-    assert f" K/L {told}: " in ask(*words)
-    later = answer(ask, "stability", "--set", "model.links=6")["later"]
+    assert f" K/L {told}: " in said(ask, *words)
+    later = answered(ask, "stability", "--set", "model.links=6")["later"]
     assert later
     for one in later:
         assert one["force_in"] == beside(one["force"], 6)
@@ -167,7 +153,7 @@ def test_later_crossings_and_bifurcations_of_states_have_theirs(ask: Ask) -> Non
 
 @pytest.mark.parametrize("command", ["stability", "threshold onset"])
 def test_along_the_number_of_links_each_has_a_length_of_its_own(command: str, ask: Ask) -> None:
-    found = answer(ask, *command.split(), "--along", "model.links=2,3")["thresholds"]
+    found = answered(ask, *command.split(), "--along", "model.links=2,3")["thresholds"]
     for links, one in zip((2, 3), found, strict=True):
         force, told = (
             (one["value"], one["force_in"])
@@ -175,19 +161,19 @@ def test_along_the_number_of_links_each_has_a_length_of_its_own(command: str, as
             else (one["hopf_force"], one["hopf_force_in"])
         )
         assert told == beside(force, links)
-    assert "17.4894" in ask(*command.split(), "--along", "model.links=2,3")
+    assert "17.4894" in said(ask, *command.split(), "--along", "model.links=2,3")
 
 
 def test_what_is_no_force_has_no_other_units_beside_it(ask: Ask) -> None:
     words = ["follow", "straight", "--along", "model.base_spring=0.5:4", "--set", "load.force=6.5"]
-    found = answer(ask, *words)
+    found = answered(ask, *words)
     (hopf,) = found["bifurcations"]
     assert "force_in" not in hopf
-    assert "K/l" not in ask(*words)
-    one = answer(ask, "threshold", "onset", "--set", "model.links=1")
+    assert "K/l" not in said(ask, *words)
+    one = answered(ask, "threshold", "onset", "--set", "model.links=1")
     assert one["value"] is None
     assert "force_in" not in one
-    assert "force_in" not in answer(ask, *COMMANDS["nothing"][0])
+    assert "force_in" not in answered(ask, *COMMANDS["nothing"][0])
 
 
 def test_two_links_are_straight_at_four_per_length_of_chain_and_spin_at_four_per_link() -> None:
@@ -217,19 +203,13 @@ def test_chains_tend_to_the_filament_of_their_further_units_as_one_over_links() 
         assert np.polyfit(np.log(links), away, 1)[0] == pytest.approx(-1.0, abs=0.15)
 
 
-def test_a_filaments_answers_name_its_own_units_and_no_others(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_a_filaments_answers_name_its_own_units_and_no_others(ask: Ask) -> None:
     for words in (["stability"], ["find", "spinning"], ["threshold", "onset"], ["run", *SHORT]):
         asked = [*words, "--set", "model.kind=filament", "--set", "model.segments=8"]
-        capsys.readouterr()
-        assert main([*asked, "--json"]) == 0
-        found = capsys.readouterr().out
+        found = text(ask(*asked, "--json"))
         assert json.loads(found)["units"] == FEW.units.names()
         assert "force_in" not in found
-        assert main(asked) == 0
-        said = capsys.readouterr().out
-        assert not re.search("zeta|K/|B = K l", said)
+        assert not re.search("zeta|K/|B = K l", text(ask(*asked)))
 
 
 # ---------------------------------------------------------------- stored runs

@@ -1,7 +1,6 @@
 """Nothing of anybody's is lost to what commands write: names are claimed, marks looked at."""
 
 import errno
-import json
 import os
 import signal
 import subprocess
@@ -15,6 +14,7 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
+from commands import PATIENCE, Ask, answer, refused, started
 from refusal import complaint
 from small_catalogue import small_catalogue
 from small_studies import AXES, QUICK, study_of
@@ -48,14 +48,10 @@ with claimed(*map(Path, sys.argv[1:])):
     print("held", flush=True)
     time.sleep(600)
 """
-#: The kernels may have to be compiled first.
-PATIENCE = 120.0
 MINE = b"years of work"
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -78,20 +74,6 @@ def result(made: Path) -> Path:
     """Give a fresh result file, with nothing beside it."""
     Path("run.nc").write_bytes((made / "run.nc").read_bytes())
     return Path("run.nc")
-
-
-@pytest.fixture
-def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Give a function that runs a command, and returns the one sentence that it is refused with."""
-
-    def run(*words: str | Path) -> str:
-        capsys.readouterr()
-        status = main([*map(str, words)])
-        said = capsys.readouterr()
-        assert (status, said.out, said.err.count("\n")) == (2, "", 1), said.err
-        return said.err
-
-    return run
 
 
 def files_of(folder: Path = Path()) -> dict[str, bytes]:
@@ -274,24 +256,24 @@ def test_figures_hold_no_trace_of_when_they_were_made(monkeypatch: pytest.Monkey
 
 @pytest.mark.parametrize("words", [["plot"], ["resume", "--until", "1"]])
 def test_a_result_that_is_called_like_a_figure_is_not_replaced_by_one(
-    words: list[str], result: Path, refused: Callable[..., str]
+    words: list[str], result: Path, ask: Ask
 ) -> None:
     os.rename(result, "kept.png")
     before = files_of()
     for further in ([], ["--overwrite"]):
-        assert "reads" in refused(words[0], "kept.png", *words[1:], *further)
+        assert "reads" in refused(ask(words[0], "kept.png", *words[1:], *further))
     os.link("kept.png", "other.nc")
-    assert "reads" in refused("plot", "other.nc", "--out", "kept.png", "--overwrite")
+    assert "reads" in refused(ask("plot", "other.nc", "--out", "kept.png", "--overwrite"))
     assert files_of() == before | {"other.nc": before["kept.png"]}
 
 
 @pytest.mark.parametrize("name", ["run.png", "run.mp4"])
 def test_a_view_of_others_is_told_before_a_run_begins(
-    name: str, refused: Callable[..., str], monkeypatch: pytest.MonkeyPatch
+    name: str, ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path(name).write_bytes(MINE)
     monkeypatch.setattr("undula.app.commands.run_job.begin", lambda *_: pytest.fail("it was begun"))
-    assert f"{name} does not carry the mark" in refused("run", *TINY, "--out", ".")
+    assert f"{name} does not carry the mark" in refused(ask("run", *TINY, "--out", "."))
     assert files_of() == {name: MINE}
 
 
@@ -311,22 +293,18 @@ def test_asked_to_a_run_replaces_the_figure_of_others() -> None:
     assert carries_mark(Path("run.png"))
 
 
-def test_a_start_is_not_replaced_by_the_run_that_begins_from_it(
-    result: Path, refused: Callable[..., str]
-) -> None:
+def test_a_start_is_not_replaced_by_the_run_that_begins_from_it(result: Path, ask: Ask) -> None:
     before = result.read_bytes()
     start = ["--set", "start.shape=state", "--set", "start.file=./run.nc"]
-    assert "reads" in refused("run", *TINY, *start, "--out", ".", "--overwrite")
+    assert "reads" in refused(ask("run", *TINY, *start, "--out", ".", "--overwrite"))
     assert result.read_bytes() == before
 
 
-def test_a_figure_of_others_is_told_before_a_run_is_taken_up(
-    result: Path, refused: Callable[..., str]
-) -> None:
+def test_a_figure_of_others_is_told_before_a_run_is_taken_up(result: Path, ask: Ask) -> None:
     before = result.read_bytes()
     Path("run.png").write_bytes(MINE)
     words = ["resume", "run.nc", "--until", "0.021", "--no-movie"]
-    assert "run.png does not carry the mark" in refused(*words)
+    assert "run.png does not carry the mark" in refused(ask(*words))
     assert files_of() == {"run.nc": before, "run.png": MINE}
     assert main([*words, "--overwrite"]) == 0
     assert carries_mark(Path("run.png"))
@@ -336,20 +314,20 @@ def test_a_figure_of_others_is_told_before_a_run_is_taken_up(
 
 @pytest.mark.parametrize(("command", "name"), [("plot", "run.png"), ("movie", "run.mp4")])
 def test_views_beside_a_result_are_renewed_if_they_are_ours(
-    command: str, name: str, made: Path, result: Path, refused: Callable[..., str]
+    command: str, name: str, made: Path, result: Path, ask: Ask
 ) -> None:
     Path(name).write_bytes(MINE)
-    assert f"{name} does not carry the mark" in refused(command, result)
+    assert f"{name} does not carry the mark" in refused(ask(command, result))
     assert Path(name).read_bytes() == MINE
     Path(name).write_bytes((made / name).read_bytes()[:-1])
     assert main([command, str(result)]) == 0
     assert Path(name).read_bytes() == (made / name).read_bytes()
 
 
-def test_the_figure_of_a_study_is_renewed_if_it_is_ours(refused: Callable[..., str]) -> None:
+def test_the_figure_of_a_study_is_renewed_if_it_is_ours(ask: Ask) -> None:
     open_study(Path("s.zarr"), study_of(Path(), QUICK + AXES))
     Path("s.png").write_bytes(MINE)
-    assert "s.png does not carry the mark" in refused("plot", "s.zarr")
+    assert "s.png does not carry the mark" in refused(ask("plot", "s.zarr"))
     assert Path("s.png").read_bytes() == MINE
     assert main(["plot", "s.zarr", "--overwrite"]) == 0
     assert main(["plot", "s.zarr"]) == 0
@@ -358,59 +336,59 @@ def test_the_figure_of_a_study_is_renewed_if_it_is_ours(refused: Callable[..., s
 
 
 def test_a_figure_of_others_is_told_before_steps_are_made(
-    refused: Callable[..., str], monkeypatch: pytest.MonkeyPatch
+    ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path("steps.png").write_bytes(MINE)
     monkeypatch.setattr("undula.app.commands.step.ramp", lambda *_, **__: pytest.fail("made"))
     assert "steps.png does not carry the mark" in refused(
-        "step", "--along", "load.force=1:2:1", "--out", "."
+        ask("step", "--along", "load.force=1:2:1", "--out", ".")
     )
     assert files_of() == {"steps.png": MINE}
 
 
 def test_an_answer_is_told_where_its_figure_cannot_be_written(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def ask(*_: object) -> object:
-        Path("figure.png").write_bytes(MINE)
-        return asked(*_)
-
     from undula.app.commands import stability
 
-    asked = stability.ask
-    monkeypatch.setattr(stability, "ask", ask)
-    assert main(["stability", "--plot", "figure.png", "--json"]) == 3
-    said = capsys.readouterr()
-    answer = json.loads(said.out)
-    assert answer["hopf_force"] > 0.0
-    assert answer["figure"] is None
-    assert "figure.png exists already" in said.err
+    before = stability.ask
+
+    def meanwhile(*_: object) -> object:
+        Path("figure.png").write_bytes(MINE)
+        return before(*_)
+
+    monkeypatch.setattr(stability, "ask", meanwhile)
+    asked = ask("stability", "--plot", "figure.png", "--json")
+    found = answer(asked, status=3)
+    assert found["hopf_force"] > 0.0
+    assert found["figure"] is None
+    assert "figure.png exists already" in asked.told
     assert Path("figure.png").read_bytes() == MINE
 
 
 # ---------------------------------------------------------------- the report
 
 
-def test_a_folder_of_others_is_no_report(refused: Callable[..., str]) -> None:
+def test_a_folder_of_others_is_no_report(ask: Ask) -> None:
     small_catalogue(Path("catalogue"))
     Path("thesis/data/onset/onset").mkdir(parents=True)
     for name in ("thesis.tex", "data/onset/onset/key", "data/onset/onset/measured.csv"):
         Path("thesis", name).write_bytes(MINE)
-    told = refused("reproduce", "onset", "--catalogue", "catalogue", "--out", "thesis")
+    told = refused(ask("reproduce", "onset", "--catalogue", "catalogue", "--out", "thesis"))
     assert f"there is no {MARK} in it" in told
     assert files_of(Path("thesis/data/onset/onset")) == {"key": MINE, "measured.csv": MINE}
 
 
-def test_files_of_others_in_a_report_are_told_and_stay(refused: Callable[..., str]) -> None:
+def test_files_of_others_in_a_report_are_told_and_stay(ask: Ask) -> None:
     words = ["reproduce", "onset", "--catalogue", "catalogue", "--workers", "1"]
     small_catalogue(Path("catalogue"))
     task = Path("report/data/onset/onset")
     with report_claimed(Path("report")):
-        assert "at work" in refused(*words)
+        assert "at work" in refused(ask(*words))
     task.mkdir(parents=True)
     for name in (task / "onset.svg", task / "measured.csv", Path("report/index.html")):
         name.write_bytes(MINE)
-        assert f"{name} was not made by undula; move it" in refused(*words)
+        assert f"{name} was not made by undula; move it" in refused(ask(*words))
         assert name.read_bytes() == MINE
         name.unlink()
     (task / "key").write_text("that of another version")
@@ -427,8 +405,7 @@ def test_files_of_others_in_a_report_are_told_and_stay(refused: Callable[..., st
 
 def endless(folder: str) -> subprocess.Popen[str]:
     """Start a run, and wait until it has stored its result for the first time."""
-    command = [sys.executable, "-c", EAGER, *ENDLESS, "--out", folder]
-    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    run = started(sys.executable, "-c", EAGER, *ENDLESS, "--out", folder, group=False)
     end = time.monotonic() + PATIENCE
     while not Path(folder, "run.nc").exists():
         assert run.poll() is None
@@ -438,15 +415,15 @@ def endless(folder: str) -> subprocess.Popen[str]:
 
 
 def test_of_two_runs_into_one_folder_the_second_is_refused_at_once(
-    refused: Callable[..., str],
+    ask: Ask,
 ) -> None:
     with endless("r") as first:
         for further in ([], ["--overwrite"]):
             assert "another undula is at work on r/run.nc" in refused(
-                *("run", *TINY, *further, "--out", "r")
+                ask(*("run", *TINY, *further, "--out", "r"))
             )
-        assert "another undula is at work on r/run.nc" in refused("resume", "r/run.nc")
-        assert "another undula is at work on r/run.png" in refused("plot", "r/run.nc")
+        assert "another undula is at work on r/run.nc" in refused(ask("resume", "r/run.nc"))
+        assert "another undula is at work on r/run.png" in refused(ask("plot", "r/run.nc"))
         first.send_signal(signal.SIGINT)
         first.communicate(timeout=PATIENCE)
     assert first.returncode == 3

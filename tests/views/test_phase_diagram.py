@@ -18,11 +18,11 @@ from matplotlib.collections import PathCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from commands import Ask, answer, refused, text
 from refusal import complaint
 from sweeps import coded, made_up, path_of, shape_of
 from undula.analysis.maps.stability_boundaries import StabilityBoundaries
 from undula.analysis.maps.stability_intervals import Change, StabilityIntervals
-from undula.app.cli import main
 from undula.sweeps.boundary_cache import NAME, keep_borders
 from undula.sweeps.store import load_sweep, open_study
 from undula.sweeps.sweep import read_study
@@ -450,10 +450,6 @@ def _record(tables: Any) -> dict[str, Any]:
     return {"status": 1, "verdict": word, "frequency": force, "energy_min": 1.0, **kept}
 
 
-def told(capsys: pytest.CaptureFixture[str]) -> Any:
-    return json.loads(capsys.readouterr().out)
-
-
 def known_borders(up_to: float = 160.0) -> StabilityBoundaries:
     """Return borders by which spinning ends at 100."""
     column = {
@@ -468,14 +464,13 @@ def known_borders(up_to: float = 160.0) -> StabilityBoundaries:
     return StabilityBoundaries("load.exponent", (0.0, 1.0), up_to, (column, column))
 
 
-def test_a_folder_is_drawn_as_a_study(study: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["plot", str(study), "--json"]) == 0
-    answer = told(capsys)
-    assert (answer["points"], answer["done"], answer["failed"]) == (16, 16, 0)
-    assert answer["verdicts"] == {"spinning": 12, "straight": 4}
-    assert answer["figure"] == "study.png"
+def test_a_folder_is_drawn_as_a_study(study: Path, ask: Ask) -> None:
+    found = answer(ask("plot", study, "--json"))
+    assert (found["points"], found["done"], found["failed"]) == (16, 16, 0)
+    assert found["verdicts"] == {"spinning": 12, "straight": 4}
+    assert found["figure"] == "study.png"
     assert Path("study.png").read_bytes()[:4] == b"\x89PNG"
-    shares = answer["basins"][1]
+    shares = found["basins"][1]
     assert (shares["load.exponent"], shares["load.force"], shares["tries"]) == (0.0, 40.0, 2)
     # Both of two: Wilson's interval ends at 1 / (1 + z^2 / n).
     assert shares["verdicts"]["spinning"]["low"] == pytest.approx(1 / (1 + 1.959964**2 / 2))
@@ -483,52 +478,41 @@ def test_a_folder_is_drawn_as_a_study(study: Path, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.parametrize("view", ["gallery", "paths", "basins"])
-def test_each_view_has_a_file_of_its_own(
-    view: str, study: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["plot", str(study), "--view", view, "--json"]) == 0
-    assert told(capsys)["figure"] == f"study-{view}.png"
+def test_each_view_has_a_file_of_its_own(view: str, study: Path, ask: Ask) -> None:
+    assert answer(ask("plot", study, "--view", view, "--json"))["figure"] == f"study-{view}.png"
     assert Path(f"study-{view}.png").exists()
 
 
-def test_a_page_is_written_where_its_name_says_so(
-    study: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["plot", str(study), "--out", "study.html"]) == 0
+def test_a_page_is_written_where_its_name_says_so(study: Path, ask: Ask) -> None:
+    asked = ask("plot", study, "--out", "study.html")
     content = content_of(Path("study.html").read_text(encoding="utf-8"))
     assert len(content["points"]) == 8
     assert all("shapes" in point for point in content["points"])
-    assert capsys.readouterr().out.startswith("study.html\n")
+    assert text(asked).startswith("study.html\n")
     # It is not replaced unasked.
-    assert main(["plot", str(study), "--out", "study.html"]) == 2
+    assert ask("plot", study, "--out", "study.html").status == 2
 
 
-def test_kept_borders_are_used_and_contradicting_runs_told(
-    study: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_kept_borders_are_used_and_contradicting_runs_told(study: Path, ask: Ask) -> None:
     keep_borders(study, load_sweep(study), known_borders())
-    assert main(["plot", str(study), "--borders", "--json"]) == 0
-    answer = told(capsys)
-    assert [one["force"] for one in answer["borders"]["spinning-lost"]] == [100.0, 100.0]
-    assert answer["borders"]["flapping-gained"][0]["force"] is None
+    found = answer(ask("plot", study, "--borders", "--json"))
+    assert [one["force"] for one in found["borders"]["spinning-lost"]] == [100.0, 100.0]
+    assert found["borders"]["flapping-gained"][0]["force"] is None
     # Spinning at 160, for two exponents and two tries.
-    assert len(answer["disagreements"]) == 4
-    assert {one["load.force"] for one in answer["disagreements"]} == {160.0}
-    assert main(["plot", str(study), "--borders"]) == 0
-    text = capsys.readouterr().out
-    assert "points that contradict the solved states: 4, 0 of them next to a border" in text
-    assert "spinning is stable from force 30 to 100 only" in text
+    assert len(found["disagreements"]) == 4
+    assert {one["load.force"] for one in found["disagreements"]} == {160.0}
+    said = text(ask("plot", study, "--borders"))
+    assert "points that contradict the solved states: 4, 0 of them next to a border" in said
+    assert "spinning is stable from force 30 to 100 only" in said
 
 
-def test_borders_are_solved_for_once(study: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_borders_are_solved_for_once(study: Path, ask: Ask) -> None:
     # Below the onset no branch has to be followed, which is quick.
-    part = ["plot", str(study), "--borders", "--json", "--at", "load.force=20", "--overwrite"]
-    assert main(part) == 0
-    first = told(capsys)
+    part = ["plot", study, "--borders", "--json", "--at", "load.force=20", "--overwrite"]
+    first = answer(ask(*part))
     assert (study / NAME).exists()
     kept = (study / NAME).stat().st_mtime_ns
-    assert main(part) == 0
-    assert told(capsys) == first
+    assert answer(ask(*part)) == first
     assert (study / NAME).stat().st_mtime_ns == kept
     onsets = [one["force"] for one in first["borders"]["onset"]]
     assert onsets[0] > onsets[1] > 30.0
@@ -547,16 +531,12 @@ def test_borders_are_solved_for_once(study: Path, capsys: pytest.CaptureFixture[
     ],
 )
 def test_a_mistake_is_told_in_one_sentence(
-    options: list[str], said: str, study: Path, capsys: pytest.CaptureFixture[str]
+    options: list[str], said: str, study: Path, ask: Ask
 ) -> None:
-    assert main(["plot", str(study), *options]) == 2
-    assert said in capsys.readouterr().err
+    assert said in refused(ask("plot", study, *options))
 
 
-def test_options_of_studies_are_refused_for_runs(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_options_of_studies_are_refused_for_runs(tmp_path: Path, ask: Ask) -> None:
     run = tmp_path / "run.nc"
     run.write_bytes(b"")
-    assert main(["plot", str(run), "--borders"]) == 2
-    assert "--borders is about studies" in capsys.readouterr().err
+    assert "--borders is about studies" in refused(ask("plot", run, "--borders"))

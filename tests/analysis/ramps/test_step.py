@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from commands import Ask, answer, refused
 from refusal import complaint
 from undula.analysis.ramps.ramp import Ramp, Step, ramp
 from undula.analysis.ramps.regime_changes import (
@@ -45,9 +46,7 @@ THROUGH = ["--along", "load.force=4:8:1.5", "--down"]
 SETTLE = Schedule(until="settled", limit=40.0)
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 @pytest.fixture(scope="module")
@@ -61,38 +60,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def series(folder: Path) -> xr.Dataset:
     return load_ramp(folder / "steps.nc")
-
-
-@pytest.fixture
-def ask(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
-    """Give a function that runs a command: exit status, output and messages."""
-
-    def run(*words: str) -> tuple[int, str, str]:
-        capsys.readouterr()
-        status = main(words)
-        said = capsys.readouterr()
-        return status, said.out, said.err
-
-    return run
-
-
-Ask = Callable[..., tuple[int, str, str]]
-
-
-def answer(asked: tuple[int, str, str], status: int = 0) -> dict[str, Any]:
-    """Return the one JSON object that a command has answered with."""
-    assert asked[0] == status, asked[2]
-    found = json.loads(asked[1])
-    assert isinstance(found, dict)
-    return found
-
-
-def refused(asked: tuple[int, str, str]) -> str:
-    """Return the sentence with which a command is refused."""
-    assert asked[0] == 2
-    assert asked[1] == ""
-    assert asked[2].count("\n") == 1
-    return asked[2].removeprefix("undula: ").rstrip()
 
 
 def same_but_for_seconds(one: xr.Dataset, other: xr.Dataset) -> None:

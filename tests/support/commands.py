@@ -1,0 +1,76 @@
+"""Commands as a user runs them, in this process and in processes of their own."""
+
+import json
+import os
+import subprocess
+import sysconfig
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+SCRIPTS = Path(sysconfig.get_path("scripts"))
+UNDULA = SCRIPTS / "undula"
+#: Seconds that a process may take: it may have to compile the kernels first, on a busy machine.
+PATIENCE = 300.0
+
+
+class Asked(NamedTuple):
+    """A command that has ended: its exit status, its output and its messages."""
+
+    status: int
+    said: str
+    told: str
+
+
+#: A function of the words of a command, which runs it.
+Ask = Callable[..., Asked]
+
+
+def answer(asked: Asked, status: int = 0) -> dict[str, Any]:
+    """Return the one JSON object that a command has answered with."""
+    assert asked.status == status, asked.told
+
+    def refuse(constant: str) -> float:
+        raise AssertionError(f"{constant} is no JSON")
+
+    found = json.loads(asked.said, parse_constant=refuse)
+    assert isinstance(found, dict)
+    return found
+
+
+def text(asked: Asked) -> str:
+    """Return the text that a command has answered with."""
+    assert asked.status == 0, asked.told
+    return asked.said
+
+
+def refused(asked: Asked) -> str:
+    """Return the one sentence with which a command is refused."""
+    assert (asked.status, asked.said, asked.told.count("\n")) == (2, "", 1), asked.told
+    return asked.told.removeprefix("undula: ").rstrip()
+
+
+def started(*command: str | Path, group: bool = True) -> subprocess.Popen[str]:
+    """Start a command whose streams are read, in a process group of its own."""
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=group)
+
+
+def ended(command: subprocess.Popen[str]) -> Asked:
+    """Return what a command that was started ends with."""
+    said, told = command.communicate(timeout=PATIENCE)
+    return Asked(command.returncode, said, told)
+
+
+def in_process(*command: str | Path, folder: Path | None = None, **environment: str) -> Asked:
+    """Return what a command ends with, run in a process of its own."""
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    return Asked(done.returncode, done.stdout, done.stderr)
