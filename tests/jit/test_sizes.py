@@ -98,6 +98,8 @@ def given(name: str, system: Any, other: dict[str, Array] | None = None) -> tupl
     for array in arrays_of(name):
         shape = [eval(size, {}, NUMBERS | sizes) for size in array.sizes]
         filled[array.name] = some(shape, array.holds)
+        # As models have them; what can be written would be compiled anew.
+        filled[array.name].setflags(write=array.name != "weights")
     if "memory.count" in filled:
         filled["memory.count"][:] = 1
     filled |= other or {}
@@ -210,8 +212,8 @@ def test_a_memory_of_an_order_that_it_has_no_differences_for_is_refused(count: i
 
 
 def test_places_outside_of_an_array_are_refused() -> None:
-    for name, array in (("shape_sums.gather", "places"), ("turning_sums.link_turns", "chosen")):
-        called = f"undula.analysis.{name}"
+    for name, array in (("shape_sums.gather", "places"), ("link_sums.link_turns", "chosen")):
+        called = f"undula.analysis.observables.{name}"
         fitting = given(called, BODIES[0].system)
         beyond = np.full_like(fitting[1], 1000)
         with pytest.raises(ValueError, match="not fit"):

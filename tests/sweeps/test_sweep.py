@@ -5,7 +5,7 @@ import os
 import random
 import signal
 import subprocess
-import sysconfig
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -17,8 +17,19 @@ import psutil
 import pytest
 import xarray as xr
 
-from small_studies import AXES, QUICK, differing
-from undula.app.cli import main
+from commands import (
+    PATIENCE,
+    SCRIPTS,
+    UNDULA,
+    Ask,
+    answer,
+    ended,
+    in_process,
+    refused,
+    started,
+    text,
+)
+from small_studies import AXES, QUICK, differing, done
 from undula.sweeps import own_workers
 from undula.sweeps import workers as pool_module
 from undula.sweeps.store import load_sweep, open_study
@@ -26,10 +37,6 @@ from undula.sweeps.sweep import read_study
 from undula.sweeps.work_queue import SweepWork
 from undula.sweeps.workers import DiedError, pool
 
-# Each starts processes of its own, which takes its time on a busy machine.
-pytestmark = pytest.mark.slow
-
-SCRIPTS = Path(sysconfig.get_path("scripts"))
 #: Beats of some links for a while, long enough together for whoever is killed in between.
 LONGER = """
 [model]
@@ -50,30 +57,12 @@ from = 100.0
 to = 300.0
 count = 20
 """
-#: Processes may have to compile the kernels first.
-PATIENCE = 300.0
 
 
 def written(folder: Path, text: str) -> Path:
     path = folder / "study.toml"
     path.write_text(text, encoding="utf-8")
     return path
-
-
-def started(*words: str | Path) -> subprocess.Popen[str]:
-    """Start a command in a process group of its own."""
-    command = [str(SCRIPTS / words[0]), *map(str, words[1:])]
-    pipe = subprocess.PIPE
-    return subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
-
-
-def answered(command: subprocess.Popen[str], status: int = 0) -> dict[str, Any]:
-    """Return the one JSON object that a command answers with."""
-    said, told = command.communicate(timeout=PATIENCE)
-    assert command.returncode == status, told
-    found = json.loads(said)
-    assert isinstance(found, dict)
-    return found
 
 
 def done_points(store: Path) -> int:
@@ -103,11 +92,11 @@ def is_worker(process: psutil.Process) -> bool:
 
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
-    """Give the file of a small study that was swept once, and the answer; its store is beside."""
+    """Give the file of a small study that two workers swept, and the answer; the store is there."""
     folder = tmp_path_factory.mktemp("swept")
     file = written(folder, QUICK + AXES)
     words = ("sweep", file, "--workers", "2", "--out", folder / "s.zarr", "--json")
-    return file, answered(started("undula", *words))
+    return file, answer(ended(started(UNDULA, *words)))
 
 
 @pytest.fixture(scope="module")
@@ -115,45 +104,50 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Data
     """Give the file of a longer study, and what it comes to when nobody disturbs it."""
     folder = tmp_path_factory.mktemp("undisturbed")
     file, store = written(folder, LONGER), folder / "s.zarr"
-    answered(started("undula", "sweep", file, "--workers", "2", "--out", store, "--json"))
+    answer(ended(started(UNDULA, "sweep", file, "--workers", "2", "--out", store, "--json")))
     return file, load_sweep(store).load()
 
 
+def test_two_workers_reach_what_this_process_reaches(
+    swept: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    here = done(read_study(swept[0]), tmp_path / "here.zarr")
+    assert differing(here, load_sweep(swept[0].parent / "s.zarr").load()) == []
+
+
 def test_a_sweep_answers_with_one_object(swept: tuple[Path, dict[str, Any]]) -> None:
-    file, answer = swept
-    assert answer["status"] == "done"
-    assert answer["points"] == {"all": 10, "done": 10, "failed": 0, "to_go": 0}
-    assert sum(answer["verdicts"].values()) == 10
-    assert answer["axes"][1] == {"key": "load.force", "count": 5, "first": 20.0, "last": 240.0}
-    assert answer["store"] == str(file.parent / "s.zarr")
-    assert answer["failures"] == []
-    assert {"load", "units", "seconds", "label", "policy", "keep", "tries"} <= answer.keys()
+    file, found = swept
+    assert found["status"] == "done"
+    assert found["points"] == {"all": 10, "done": 10, "failed": 0, "to_go": 0}
+    assert sum(found["verdicts"].values()) == 10
+    assert found["axes"][1] == {"key": "load.force", "count": 5, "first": 20.0, "last": 240.0}
+    assert found["store"] == str(file.parent / "s.zarr")
+    assert found["failures"] == []
+    assert {"load", "units", "seconds", "label", "policy", "keep", "tries"} <= found.keys()
 
 
 def test_the_status_of_a_store_is_told_without_its_input(
-    swept: tuple[Path, dict[str, Any]], capsys: pytest.CaptureFixture[str]
+    swept: tuple[Path, dict[str, Any]], ask: Ask
 ) -> None:
     store = swept[0].parent / "s.zarr"
-    assert main(["status", str(store), "--json"]) == 0
-    answer = json.loads(capsys.readouterr().out)
-    assert answer == {key: value for key, value in swept[1].items() if key != "seconds"}
-    assert main(["status", str(store)]) == 0
-    said = capsys.readouterr().out
+    found = answer(ask("status", store, "--json"))
+    assert found == {key: value for key, value in swept[1].items() if key != "seconds"}
+    said = text(ask("status", store))
     for words in ("power load: done", "load.force from 20 to 240, 5 values", "10 of 10 done"):
         assert words in said
 
 
 def test_a_study_that_is_done_starts_no_workers(
     swept: tuple[Path, dict[str, Any]],
-    capsys: pytest.CaptureFixture[str],
+    ask: Ask,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
         "undula.app.commands.sweep.pool", lambda *_: pytest.fail("they were started")
     )
     store = swept[0].parent / "s.zarr"
-    assert main(["sweep", str(swept[0]), "--out", str(store), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["verdicts"] == swept[1]["verdicts"]
+    again = answer(ask("sweep", swept[0], "--out", store, "--json"))
+    assert again["verdicts"] == swept[1]["verdicts"]
 
 
 REFUSED = {
@@ -167,33 +161,33 @@ REFUSED = {
 
 @pytest.mark.parametrize("words", REFUSED)
 def test_a_wrong_call_gets_one_sentence_and_status_2(
-    words: str, swept: tuple[Path, dict[str, Any]], capsys: pytest.CaptureFixture[str]
+    words: str, swept: tuple[Path, dict[str, Any]], ask: Ask
 ) -> None:
     store = swept[0].parent / "s.zarr"
-    assert main(["sweep", str(swept[0]), "--out", str(store), *words.split(), "--json"]) == 2
-    said = capsys.readouterr()
-    assert REFUSED[words] in json.loads(said.out)["error"]
-    assert len(said.err.splitlines()) == 1
+    asked = ask("sweep", swept[0], "--out", store, *words.split(), "--json")
+    assert REFUSED[words] in answer(asked, status=2)["error"]
+    assert len(asked.told.splitlines()) == 1
 
 
 def test_a_scheduler_that_does_not_answer_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(pool_module, "PATIENCE", 0.2)
     file = written(tmp_path, QUICK + AXES)
-    words = ["--scheduler", "tcp://127.0.0.1:1", "--out", str(tmp_path / "s.zarr")]
-    assert main(["sweep", str(file), *words]) == 2
-    assert "no Dask scheduler answers at --scheduler tcp://127.0.0.1:1" in capsys.readouterr().err
+    words = ["--scheduler", "tcp://127.0.0.1:1", "--out", tmp_path / "s.zarr"]
+    told = refused(ask("sweep", file, *words))
+    assert "no Dask scheduler answers at --scheduler tcp://127.0.0.1:1" in told
 
 
+@pytest.mark.slow
 def test_a_budget_and_ctrl_c_leave_a_study_that_goes_on(
     undisturbed: tuple[Path, xr.Dataset], tmp_path: Path
 ) -> None:
     file, whole = undisturbed
     words = ("sweep", file, "--workers", "2", "--out", tmp_path / "s.zarr", "--json")
-    first = answered(started("undula", *words, "--budget", "1"), status=3)
+    first = answer(ended(started(UNDULA, *words, "--budget", "1")), status=3)
     assert first["status"] == "out of time"
-    second = started("undula", *words)
+    second = started(UNDULA, *words)
     wait_for(lambda: done_points(tmp_path / "s.zarr") > first["points"]["done"], second)
     # As from a terminal: to all processes of the command.
     os.killpg(second.pid, signal.SIGINT)
@@ -203,7 +197,7 @@ def test_a_budget_and_ctrl_c_leave_a_study_that_goes_on(
     assert "Traceback" not in told
     counts = json.loads(said)["points"]
     assert 0 < counts["to_go"] < counts["all"] == whole["status"].size
-    assert answered(started("undula", *words))["status"] == "done"
+    assert answer(ended(started(UNDULA, *words)))["status"] == "done"
     assert differing(load_sweep(tmp_path / "s.zarr").load(), whole) == []
 
 
@@ -214,7 +208,7 @@ def test_killed_workers_and_a_killed_driver_change_nothing(
     file, whole = undisturbed
     chance, store = random.Random(1), tmp_path / "s.zarr"
     words = ("sweep", file, "--workers", "2", "--out", store, "--json")
-    command = started("undula", *words)
+    command = started(UNDULA, *words)
     for _ in range(3):
         wait_for(lambda: len(worker_processes(command)) == 2, command)
         time.sleep(chance.uniform(0.5, 4.0))
@@ -228,8 +222,8 @@ def test_killed_workers_and_a_killed_driver_change_nothing(
     assert psutil.wait_procs(workers, timeout=PATIENCE)[1] == []
     before = done_points(store)
     assert 0 < before < whole["status"].size
-    answer = answered(started("undula", *words))
-    assert answer["points"]["done"] == whole["status"].size
+    found = answer(ended(started(UNDULA, *words)))
+    assert found["points"]["done"] == whole["status"].size
     assert differing(load_sweep(store).load(), whole) == []
 
 
@@ -274,7 +268,7 @@ def test_the_same_holds_with_a_scheduler_and_workers_of_their_own(
     with scheduler_of_its_own(tmp_path) as (address, add):
         workers = [add(), add()]
         words = ("sweep", file, "--scheduler", address, "--out", store, "--json")
-        command = started("undula", *words)
+        command = started(UNDULA, *words)
         for _ in range(3):
             time.sleep(chance.uniform(2.0, 6.0))
             for worker in workers:
@@ -285,7 +279,7 @@ def test_the_same_holds_with_a_scheduler_and_workers_of_their_own(
         command.kill()
         command.communicate(timeout=PATIENCE)
         assert 0 < done_points(store) < whole["status"].size
-        assert answered(started("undula", *words))["status"] == "done"
+        assert answer(ended(started(UNDULA, *words)))["status"] == "done"
     assert differing(load_sweep(store).load(), whole) == []
 
 
@@ -334,8 +328,7 @@ def test_help_on_sweeps_loads_nothing_heavy(name: str) -> None:
         "import sys; from undula.app.cli import main; main(['sweep', '--help']);"
         f" sys.exit({name!r} in sys.modules)"
     )
-    python = Path(sysconfig.get_path("scripts")) / "python"
-    assert subprocess.run([python, "-c", code], capture_output=True, check=False).returncode == 0
+    assert in_process(sys.executable, "-c", code).status == 0
 
 
 def test_a_store_tells_the_version_that_made_it(swept: tuple[Path, dict[str, Any]]) -> None:
