@@ -9,8 +9,11 @@ DEV := $(VENV)/.installed-dev
 BENCH := $(VENV)/.installed-bench
 INPUTS := pyproject.toml constraints.txt
 
-# On all processors; the tests of a file share what they have computed, and stay together.
-PARALLEL := -n logical --dist loadfile
+# Every process of the tests reads our sources: they are not to be translated anew each time.
+unexport PYTHONDONTWRITEBYTECODE
+
+# On all processors; tests of a file share what they have computed, so that only the last ones move.
+PARALLEL := -n logical --dist worksteal
 
 # What runs compiled code by itself. With every index checked its sums are taken in another order, and
 # the bound on round-off of one test is too tight for it.
@@ -28,12 +31,13 @@ CANDIDATES := python3.11 python3 python3.12 python3.13
 FIND_PYTHON = for p in $(CANDIDATES); do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done
 
-.PHONY: help run test test-slow lint docs bench clean
+.PHONY: help run quick test tests kernels test-slow lint docs bench clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make run        install, then run examples/spinning.toml into results/spinning"
 	@echo "make test       install all that is needed, then every check and the tests"
+	@echo "make quick      style, and the tests of what differs from origin/main"
 	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint       style, types and import rules"
 	@echo "make docs       build the documentation into site/"
@@ -43,8 +47,21 @@ help:
 run: $(RUN)
 	$(BIN)/undula run examples/spinning.toml --out results/spinning --overwrite
 
-test: lint docs
+# Side by side: the checks are done while kernels are compiled.
+test: $(DEV)
+	$(MAKE) --jobs=3 lint docs tests
+
+tests: kernels
 	$(BIN)/python -m pytest $(PARALLEL)
+
+kernels: $(DEV)
+	$(BIN)/python tests/support/kernels.py
+
+quick: $(DEV)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	tests=$$($(BIN)/python tests/support/changed.py) && \
+		if [ -n "$$tests" ]; then $(BIN)/python -m pytest $(PARALLEL) $$tests; fi
 
 test-slow: $(DEV)
 	$(BIN)/python -m pytest $(PARALLEL) -m slow

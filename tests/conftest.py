@@ -1,5 +1,6 @@
 """Settings shared by all tests, and what they run commands with."""
 
+import gc
 import os
 from pathlib import Path
 
@@ -13,6 +14,9 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 
 # As on the command line, see `undula.app.cli`.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Thousands of tests are thousands of objects that stay: looking through them all takes its time.
+gc.set_threshold(100_000, 20, 100)
 
 # The first call of a kernel compiles it, which no deadline per example could allow for.
 settings.register_profile("undula", deadline=None)
