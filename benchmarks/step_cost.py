@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import undula as un
-from undula.analysis.run_settings import STALE_AFTER, Schedule
+from undula.analysis.run_settings import MAX_STALE_DISPLACEMENT, Schedule
 from undula.analysis.runs.simulation import Simulation
 from undula.numerics.integration import stepper_state as names
 from undula.numerics.integration.schemes import NDF
@@ -49,7 +49,7 @@ def window(model: un.Filament, x: np.ndarray, span: float, rtol: float, *, frame
         model.unknowns(model.straight()) * model.position_mask,
         rtol=rtol,
         atol=1e-10,
-        stale_after=STALE_AFTER,
+        stale_after=MAX_STALE_DISPLACEMENT,
         longest_step=np.inf,
         frame=frame,
     )

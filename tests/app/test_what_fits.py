@@ -12,7 +12,7 @@ import undula as un
 from refusal import complaint
 from small_studies import study_of
 from undula.analysis.ramps.ramp import MOST_STEPS, Ramp
-from undula.analysis.run_settings import MOST_SAMPLES, Schedule
+from undula.analysis.run_settings import MAX_SAMPLES, Schedule
 from undula.analysis.runs import memory_needed as room
 from undula.analysis.runs.integrate import Progress
 from undula.analysis.runs.memory_needed import memory, needed_memory, refuse_too_large
@@ -112,7 +112,7 @@ def test_the_command_keeps_to_the_limit_of_its_process(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("tables", "end"),
     [
-        ({"time": {"samples": 10**15}}, MOST_SAMPLES),
+        ({"time": {"samples": 10**15}}, MAX_SAMPLES),
         ({"model": {"segments": 10**6}}, 2000),
         ({"model": {"kind": "chain", "links": 10**6}}, 1000),
         ({"time": {"atol": 1.0}}, 0.01),

@@ -212,7 +212,7 @@ def test_a_memory_of_an_order_that_it_has_no_differences_for_is_refused(count: i
 
 
 def test_places_outside_of_an_array_are_refused() -> None:
-    for name, array in (("shape_sums.gather", "places"), ("link_sums.link_turns", "chosen")):
+    for name, array in (("shape_sums.gather", "columns"), ("link_sums.link_turns", "chosen")):
         called = f"undula.analysis.observables.{name}"
         fitting = given(called, BODIES[0].system)
         beyond = np.full_like(fitting[1], 1000)

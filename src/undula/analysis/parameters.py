@@ -6,9 +6,9 @@ from typing import Any
 from undula.errors import InputError, is_number
 from undula.models.model import Model
 
-#: The parameter that most questions are about.
+#: Name of the total follower force, the default parameter of most questions.
 FORCE = "load.force"
-#: Components of pairs of numbers, with the field and the index of each.
+#: Parameters that are one component of a pair of numbers: field and index by name.
 _COMPONENTS = {
     f"model.natural_curvature.{name}": ("natural_curvature", index)
     for index, name in enumerate(("k1", "k2"))
@@ -22,22 +22,28 @@ def changed(model: Model, parameter: str, value: float) -> Model:
     ----------
     model : Model
     parameter : str
-        "load." and a number of its load, or "model." and one of its own.
+        "load." and a number of the load, or "model." and a number of the model.
     value : float
+        New value, in the unit of the parameter; a whole number where the parameter is one.
+
+    Returns
+    -------
+    Model
+        A copy with the new value.
 
     Raises
     ------
     InputError
-        There is no such parameter, or the value is out of its range.
+        The model has no such parameter, or the value is out of its range.
     """
-    place, _, name = parameter.partition(".")
+    owner_name, _, name = parameter.partition(".")
     if parameter in _COMPONENTS and parameter in _numbers(model):
         return _with_component(model, *_COMPONENTS[parameter], value)
-    owner: Any = model.load if place == "load" else model if place == "model" else None
+    owner: Any = {"load": model.load, "model": model}.get(owner_name)
     field = getattr(owner, "__dataclass_fields__", {}).get(name)
     if field is None or not field.init or not is_number(getattr(owner, name)):
-        known = " or ".join(_numbers(model))
-        raise InputError(f"{parameter} is no number of this model; take {known}")
+        names = " or ".join(_numbers(model))
+        raise InputError(f"{parameter} is no number of this model; take {names}")
     if field.type not in (int, "int"):
         return model.with_(**{name: float(value)})
     if value != round(value):
@@ -46,29 +52,52 @@ def changed(model: Model, parameter: str, value: float) -> Model:
 
 
 def value_of(model: Model, parameter: str) -> float:
-    """Return the value of a parameter that a state can be followed along.
+    """Return the value of a continuous parameter, along which a branch can be followed.
+
+    Parameters
+    ----------
+    model : Model
+    parameter : str
+        Name as in `changed`.
+
+    Returns
+    -------
+    float
+        The value, in the unit of the parameter.
 
     Raises
     ------
     InputError
-        There is no such parameter, or it is a whole number, which has nothing in between.
+        The model has no such parameter, or it is a whole number.
     """
-    known = [name for name, kind in _numbers(model).items() if kind not in (int, "int")]
-    if parameter not in known:
-        raise InputError(f"nothing can be followed along {parameter}; take {' or '.join(known)}")
+    names = [name for name, kind in _numbers(model).items() if kind not in (int, "int")]
+    if parameter not in names:
+        raise InputError(f"nothing can be followed along {parameter}; take {' or '.join(names)}")
     if parameter in _COMPONENTS:
         name, index = _COMPONENTS[parameter]
         return float(getattr(model, name)[index])
-    place, name = parameter.split(".")
-    return float(getattr(model.load if place == "load" else model, name))
+    owner_name, name = parameter.split(".")
+    return float(getattr(model.load if owner_name == "load" else model, name))
 
 
 def neighbours(model: Model, parameter: str, value: float) -> tuple[Model, Model, float]:
-    """Return the models a little below and above a value, and the difference of their values.
+    """Return the models just below and above a value, for a difference quotient.
 
-    They serve to differentiate by the parameter; at an end of its range one of them lies on it.
+    Parameters
+    ----------
+    model : Model
+    parameter : str
+        Name as in `changed`.
+    value : float
+        Value inside the range of the parameter; at an end of the range the difference is one-sided.
+
+    Returns
+    -------
+    below, above : Model
+    difference : float
+        Difference of their values, about 2e-5 of the larger of 1 and the value.
     """
-    # A hundred-thousandth: differences of smooth functions are then good to ten digits.
+    # Central differences of smooth functions with this step are good to ten digits.
     step = 1e-5 * max(1.0, abs(value))
     sides = []
     for side in (value - step, value + step):
@@ -81,10 +110,10 @@ def neighbours(model: Model, parameter: str, value: float) -> tuple[Model, Model
 
 
 def _numbers(model: Any) -> dict[str, Any]:
-    """Return the declared types of a model's numbers and of its load's, by name."""
+    """Return the declared types of the numbers of a load and a model, by parameter name."""
     numbers = {
-        f"{place}.{field.name}": field.type
-        for place, owner in (("load", model.load), ("model", model))
+        f"{owner_name}.{field.name}": field.type
+        for owner_name, owner in (("load", model.load), ("model", model))
         for field in dataclasses.fields(owner)
         if field.init and is_number(getattr(owner, field.name))
     }

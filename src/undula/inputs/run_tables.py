@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from undula.analysis.run_settings import LEAST_RTOL, MOST_ATOL, MOST_RTOL, MOST_SAMPLES
+from undula.analysis.run_settings import MAX_ATOL, MAX_RTOL, MAX_SAMPLES, MIN_RTOL
 from undula.inputs.table import OnlyWith, Table, conflict
 
 Shape = Literal["kicked", "straight", "planar", "helix", "mode", "state"]
@@ -102,19 +102,19 @@ class TimeTable(Table):
     )
     limit: float = Field(default=10.0, gt=0.0, description="a number above 0")
     samples: int = Field(
-        default=4000, ge=2, le=MOST_SAMPLES, description=f"a whole number from 2 to {MOST_SAMPLES}"
+        default=4000, ge=2, le=MAX_SAMPLES, description=f"a whole number from 2 to {MAX_SAMPLES}"
     )
     rtol: float = Field(
         default=1e-6,
-        ge=LEAST_RTOL,
-        le=MOST_RTOL,
-        description=f"a number from {LEAST_RTOL:g} to {MOST_RTOL:g}",
+        ge=MIN_RTOL,
+        le=MAX_RTOL,
+        description=f"a number from {MIN_RTOL:g} to {MAX_RTOL:g}",
     )
     atol: float = Field(
         default=1e-10,
         gt=0.0,
-        le=MOST_ATOL,
-        description=f"a number above 0 and at most {MOST_ATOL:g}",
+        le=MAX_ATOL,
+        description=f"a number above 0 and at most {MAX_ATOL:g}",
     )
 
     only_with: ClassVar[Mapping[str, OnlyWith]] = {

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from undula.analysis.observables.sample_sums import (
+    largest_ahead,
     largest_imbalance,
     line_slope,
     mean_and_deviation,
-    still_ahead,
 )
 from undula.analysis.observables.shapes import envelope
 from undula.arrays import Array
@@ -67,10 +67,10 @@ def test_the_largest_imbalance_is_what_stores_gain_beyond_what_comes_in() -> Non
 def test_what_is_still_ahead_is_the_largest_of_the_rest(decay: float) -> None:
     values = np.abs(noise(60)) * np.exp(-decay * np.arange(60.0))
     ahead = np.empty(60)
-    peak, count = still_ahead(values, 0.3, ahead)
+    peak, count = largest_ahead(values, 0.3, ahead)
     np.testing.assert_array_equal(ahead, [values[k:].max() for k in range(60)])
     assert (peak, count) == (values.argmax(), np.count_nonzero(ahead > 0.3 * values.max()))
 
 
 def test_of_equal_peaks_the_last_one_counts() -> None:
-    assert still_ahead(np.array([1.0, 3.0, 2.0, 3.0, 0.5]), 0.5, np.empty(5)) == (3, 4)
+    assert largest_ahead(np.array([1.0, 3.0, 2.0, 3.0, 0.5]), 0.5, np.empty(5)) == (3, 4)

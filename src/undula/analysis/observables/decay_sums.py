@@ -8,16 +8,16 @@ import numpy as np
 from undula.jit.compilation import entry
 
 _TINY = float(np.finfo(np.float64).tiny)
-# Below this square of the sine between two columns they are one to round-off.
-_ONE_COLUMN = 1e-26
+# Square of the sine between two columns below which they are parallel to round-off.
+_MIN_SINE_SQUARED = 1e-26
 
 
 @entry("nodes (m, k, 3), weights (k), along (m, k)")
 def deflect(nodes: Any, angle: Any, weights: Any, along: Any) -> Any:
     """Write to along (m, N + 1) the deflections of shapes (m, N + 1, 3) in the plane at an azimuth.
 
-    Returns how often their mean, with weights (N + 1,), changes its sign, and whether none is 0
-    throughout.
+    Returns the number of sign changes of their mean, with weights (N + 1,), and True if all samples
+    have a deflection other than 0.
     """
     cosine, sine = math.cos(angle), math.sin(angle)
     crossings, sign, moved = 0, 0.0, True
@@ -36,9 +36,9 @@ def deflect(nodes: Any, angle: Any, weights: Any, along: Any) -> Any:
 
 @entry("along (m, k), even (p, 2 * k), sizes (p)", where=lambda lag, m, p: 0 <= lag <= m - p)
 def pair(along: Any, lag: Any, even: Any, sizes: Any) -> None:
-    """Write to even (p, 2 (N + 1)) each deflection and the one `lag` later, divided by their size.
+    """Write to even (p, 2 (N + 1)) each deflection and the one `lag` later, scaled to norm 1.
 
-    The sizes go to sizes (p,).
+    The norms are written to sizes (p,).
     """
     nodes = along.shape[1]
     for i in range(even.shape[0]):
@@ -54,10 +54,11 @@ def pair(along: Any, lag: Any, even: Any, sizes: Any) -> None:
 
 @entry("path (p, 2), sizes (p), step (2, 2)", where=lambda lag: lag >= 0)
 def fit_step(path: Any, sizes: Any, lag: Any, step: Any) -> None:
-    """Write to step (2, 2) the matrix S that steps samples to those `lag` later, fitted to all.
+    """Write to step (2, 2) the matrix S that maps samples to those `lag` later.
 
-    `path` (p, 2) holds the coordinates z of samples, each divided by its size. Least squares of
-    z_later - z S, where each sample counts the same: the columns are made orthogonal first.
+    `path` (p, 2) contains the coordinates z of the samples, each divided by its norm. S minimises
+    the squares of z_later - z S with equal weight for each sample; the columns are orthogonalised
+    first.
     """
     first, mixed, second = 0.0, 0.0, 0.0
     for i in range(path.shape[0] - lag):
@@ -73,16 +74,17 @@ def fit_step(path: Any, sizes: Any, lag: Any, step: Any) -> None:
             step[0, b] += path[i, 0] * later
             step[1, b] += rest * later
     for b in range(2):
-        step[1, b] = step[1, b] / second if second > _ONE_COLUMN * first else 0.0
+        step[1, b] = step[1, b] / second if second > _MIN_SINE_SQUARED * first else 0.0
         step[0, b] = step[0, b] / first - mixed * step[1, b]
 
 
 @entry("path (p, 2), sizes (p), vector (3), logs (p), phases (p)")
 def follow(path: Any, sizes: Any, vector: Any, logs: Any, phases: Any) -> None:
-    """Write logarithm and phase (p,) of the amplitude, followed through time.
+    """Write logarithm and continuous phase (p,) of the amplitude of a mode.
 
-    `path` (p, 2) and `sizes` (p,) are as before, and the amplitude is the product of the
-    coordinates z and a vector of which the second entry may be complex: its three numbers (3,).
+    `path` (p, 2) and `sizes` (p,) are those of `fit_step`. The amplitude is the product of the
+    coordinates z with `vector` (3,): its first entry, real, and real and imaginary part of its
+    second one.
     """
     last = 0.0
     for i in range(path.shape[0]):

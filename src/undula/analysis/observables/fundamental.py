@@ -1,4 +1,4 @@
-"""The fundamental frequency of a window of signals, with an error, or the admission of none."""
+"""Fundamental frequency of a window of signals, with its error; None where it is not resolved."""
 
 from __future__ import annotations
 
@@ -17,45 +17,46 @@ from undula.analysis.observables.harmonics import (
 from undula.analysis.observables.spectrum import spectral_peak
 from undula.arrays import ComplexArray, Instants
 
-# Below this many periods in the window a frequency and a drift cannot be told apart: no answer.
+# Least number of periods in the window: with fewer, frequency and drift are indistinguishable.
 MIN_PERIODS = 2.5
-# Below this many samples a period strong harmonics fold back onto the fundamental: no answer.
+# Least number of samples a period: with fewer, strong harmonics are aliased onto the fundamental.
 MIN_SAMPLES_PER_PERIOD = 5.0
-# The fewest samples worth a fit: MIN_PERIODS of MIN_SAMPLES_PER_PERIOD, rounded up.
+# Least number of samples of a fit: MIN_PERIODS of MIN_SAMPLES_PER_PERIOD, rounded up.
 MIN_SAMPLES = 13
-# Two overlapping parts of the window this long are fitted again; they keep most of its resolution
-# and still see different data.
-PART = 2.0 / 3.0
-# A motion whose harmonics leave more than this share of its RMS has no frequency of its own
-# (half of the variance left would be 0.71; white noise leaves nearly 1).
+# Length of the two overlapping parts of the window that are fitted again, as a share of it: they
+# keep most of its resolution and still contain different data.
+PART_SHARE = 2.0 / 3.0
+# Largest remainder of the harmonics, as a share of the RMS of the motion, with which a frequency
+# is reported (half of the variance is 0.71; white noise leaves nearly 1).
 MAX_MISFIT = 0.7
-# An error above this share of the value means that the parts of the window disagree: no answer.
+# Largest error, as a share of the frequency: above it the parts of the window disagree.
 MAX_RELATIVE_ERROR = 0.2
-# The pull of the remainder is that of one typical draw; four times it is exceeded rarely.
-DEVIATIONS = 4.0
-# The spread over parts and weights is a sample of four; the largest of so few is doubled.
-SPREAD_FACTOR = 2.0
-# Round-off of the fit, in windings over the window.
-ROUND_OFF = 1e-11
-# Clockwise and anticlockwise parts that agree to this are an oscillation, not a rotation: an
-# ellipse of axes 50 to 1, which the first verdict calls planar too.
+# Factor on the pull of the remainder, which is that of one typical draw: rarely exceeded.
+FLOOR_FACTOR = 4.0
+# Factor on the largest deviation over parts and weights, which is the largest of only four.
+DEVIATION_FACTOR = 2.0
+# Round-off of the fit [cycles over the window].
+ROUND_OFF_CYCLES = 1e-11
+# Relative difference of clockwise and anticlockwise parts up to which a motion is an oscillation:
+# an ellipse of axes 50 to 1, which the first verdict also calls planar.
 SENSE_TOLERANCE = 0.04
-# It is taken when it leaves less than this share of that: more terms always leave a little less.
+# Share of the former remainder that a longer period has to leave at most: more terms always leave
+# a little less.
 SUBHARMONIC_GAIN = 0.3
-# A longer period is tried when the strongest line's harmonics leave more than this.
+# Remainder of the harmonics of the strongest line above which a longer period is tried.
 SUBHARMONIC_FLOOR = 1e-3
 
 
 @dataclass(frozen=True)
 class Frequency:
-    """A frequency and the error it is believed to have.
+    """A frequency with an estimate of its error.
 
     Attributes
     ----------
     value
-        Cycles per unit of time (T); the sign is the sense of turning where there is one.
+        Frequency [cycles/T]; the sign is the sense of rotation where the motion has one.
     error
-        Bound meant to hold nearly always, same unit, at least the round-off of the fit.
+        Bound that holds nearly always [cycles/T], at least the round-off of the fit.
     """
 
     value: float
@@ -65,26 +66,26 @@ class Frequency:
 def find_frequency(
     time: Instants, signals: ComplexArray, *, longest_period: int = 1
 ) -> Frequency | None:
-    """Find the frequency of the strongest line, refined with its harmonics.
+    """Return the frequency of the strongest spectral line, refined with its harmonics.
 
-    The error adds up the spread over other weights and other parts of the window, the pull of what
-    the harmonics leave, and round-off.
+    The error is the sum of the deviation under other weights and on other parts of the window, the
+    pull of the remainder of the harmonics, and round-off.
 
     Parameters
     ----------
     time
         Equally spaced times [T], shape ``(m,)``.
     signals
-        Shape ``(m, channels)``, one frequency common to all; real signals as complex ones.
+        Complex, shape ``(m, channels)``, with one frequency common to all.
     longest_period
-        The period may be up to this many times that of the strongest line, where the signal repeats
-        only then.
+        Largest ratio, at least 1, of the period to that of the strongest line, for signals with
+        subharmonics.
 
     Returns
     -------
     Frequency or None
-        Negative when the parts turning clockwise are stronger. None when no line stands out, or
-        the window holds fewer than 2.5 periods or a period fewer than 5 samples.
+        Negative when the clockwise parts are stronger. None when no line stands out, or the window
+        holds fewer than 2.5 periods or a period fewer than 5 samples.
     """
     if len(time) < MIN_SAMPLES:
         return None
@@ -96,14 +97,14 @@ def find_frequency(
 def _fundamental(
     time: Instants, signals: ComplexArray, guess: float, subharmonic: int = 1
 ) -> HarmonicFit | None:
-    """Fit over the whole window, if the window and the sampling allow one."""
-    if not _seen(time, guess, subharmonic):
+    """Fit over the whole window; None where the window or the sampling do not resolve it."""
+    if not _resolves(time, guess, subharmonic):
         return None
     harmonics = harmonic_count(time, guess, subharmonic * MAX_HARMONICS)
     return fit_harmonics(time, signals, guess, harmonics=harmonics)
 
 
-def _seen(time: Instants, guess: float, subharmonic: int) -> bool:
+def _resolves(time: Instants, guess: float, subharmonic: int) -> bool:
     span = float(time[-1] - time[0])
     rate = (len(time) - 1) / span
     return guess * span >= MIN_PERIODS and subharmonic * guess * MIN_SAMPLES_PER_PERIOD <= rate
@@ -112,19 +113,19 @@ def _seen(time: Instants, guess: float, subharmonic: int) -> bool:
 def _worth_fitting(
     time: Instants, signals: ComplexArray, line: HarmonicFit, factor: int, least: float
 ) -> bool:
-    """Whether a period so many times longer, unrefined, leaves about as little as it has to."""
+    """Return True if a period longer by a factor, unrefined, leaves nearly a small enough rest."""
     guess = line.frequency / factor
-    if not _seen(time, guess, factor):
+    if not _resolves(time, guess, factor):
         return False
     harmonics = harmonic_count(time, guess, factor * MAX_HARMONICS)
-    # What refining could still mend: at the line's own frequency little.
+    # The factor of two allows for the refinement, which gains little at the line's own frequency.
     return misfit_at(time, signals, guess, harmonics=harmonics) < 2.0 * SUBHARMONIC_GAIN * least
 
 
 def _longest_needed(
     time: Instants, signals: ComplexArray, guess: float, longest_period: int
 ) -> HarmonicFit | None:
-    """Fit the strongest line, or a longer period where the signals need one."""
+    """Fit the strongest line, or a longer period where the signals have subharmonics."""
     chosen = line = _fundamental(time, signals, guess)
     for factor in range(2, longest_period + 1):
         if line is None or chosen is None or chosen.misfit <= SUBHARMONIC_FLOOR:
@@ -138,22 +139,22 @@ def _longest_needed(
 
 
 def _with_error(time: Instants, signals: ComplexArray, fit: HarmonicFit) -> Frequency | None:
-    """Compare with other weights and other parts of the window; None if they tell nothing."""
+    """Return the frequency with its error from other weights and parts; None if they disagree."""
     harmonics = len(fit.coefficients) // 2
-    part = round(PART * len(time))
-    everywhere, first, last = slice(None), slice(0, part), slice(-part, None)
-    spread = 0.0
-    for where, taper in ((everywhere, 2), (first, 1), (last, 1)):
+    part = round(PART_SHARE * len(time))
+    whole, first, last = slice(None), slice(0, part), slice(-part, None)
+    deviation = 0.0
+    for window, taper in ((whole, 2), (first, 1), (last, 1)):
         other = refined(
-            time[where], signals[where], fit.frequency, harmonics=harmonics, taper=taper, steps=1
+            time[window], signals[window], fit.frequency, harmonics=harmonics, taper=taper, steps=1
         )
         if other is None:
             return None
-        spread = max(spread, abs(other - fit.frequency))
-    rounding = ROUND_OFF / float(time[-1] - time[0])
-    error = SPREAD_FACTOR * spread + DEVIATIONS * fit.floor + rounding
-    told = fit.misfit <= MAX_MISFIT and error <= MAX_RELATIVE_ERROR * fit.frequency
-    return Frequency(_sense(fit) * fit.frequency, error) if told else None
+        deviation = max(deviation, abs(other - fit.frequency))
+    rounding = ROUND_OFF_CYCLES / float(time[-1] - time[0])
+    error = DEVIATION_FACTOR * deviation + FLOOR_FACTOR * fit.floor + rounding
+    valid = fit.misfit <= MAX_MISFIT and error <= MAX_RELATIVE_ERROR * fit.frequency
+    return Frequency(_sense(fit) * fit.frequency, error) if valid else None
 
 
 def _sense(fit: HarmonicFit) -> float:

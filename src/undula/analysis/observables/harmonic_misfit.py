@@ -1,7 +1,7 @@
-"""How much of a motion does not repeat with a given period, at any rate of sampling.
+"""Share of a motion that is not periodic with a given frequency, at any sampling rate.
 
-A frequency known from one signal is used on all nodes. Harmonics above half the sampling rate
-are not lost: they appear folded to lower frequencies, at known places, and are fitted there.
+A frequency measured on one signal is tested on all nodes. Harmonics above half the sampling rate
+are aliased to known lower frequencies and are fitted there.
 """
 
 from __future__ import annotations
@@ -12,18 +12,19 @@ from undula.analysis.observables.planarity import in_plane, plane_angle
 from undula.analysis.observables.spectrum import hann
 from undula.arrays import Array, Instants, Shapes
 
-# In a violent flapping (tip force 300) the harmonics beyond the eighth are below one per cent.
+# Largest number of harmonics: in flapping at a tip force of 300 B/L^2 those beyond the eighth are
+# below one per cent.
 MAX_HARMONICS = 8
-# Two harmonics that fold to within this many windings over the window of each other are one to the
-# Hann weight; where they coincide the one stands for the other.
-RESOLUTION = 2.0
+# Least distance of two aliased harmonics that the Hann weight resolves [cycles over the window]; of
+# two closer ones only the lower is fitted.
+RESOLUTION_CYCLES = 2.0
 
 
 def misfit(time: Instants, nodes: Shapes, frequency: float) -> float:
-    """Share of the motion that is no sum of harmonics of the frequency.
+    """Return the share of the motion that is no sum of harmonics of the frequency.
 
-    Taken from the heights of all nodes and their deflections along the principal plane, relative to
-    the RMS of their variation in time, under a Hann weight.
+    It is measured on the heights of all nodes and their deflections within the principal plane,
+    relative to the RMS of their variation in time, under a Hann weight.
 
     Parameters
     ----------
@@ -32,12 +33,13 @@ def misfit(time: Instants, nodes: Shapes, frequency: float) -> float:
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
     frequency
-        Cycles per T, positive, known to well within a winding over the window.
+        Positive [cycles/T], with an error of less than one cycle over the window.
 
     Returns
     -------
     float
-        0 for a periodic motion, 1 for one that has nothing of the frequency or does not move.
+        From 0 for a periodic motion to 1 for one without a part of this frequency or without
+        motion.
     """
     along, _ = in_plane(nodes, plane_angle(nodes))
     signals = np.concatenate([along, nodes[..., 2]], axis=1)
@@ -52,30 +54,31 @@ def misfit(time: Instants, nodes: Shapes, frequency: float) -> float:
         sums[:n] - 1j * sums[n:],
     )
     real, imaginary = coefficients.real, coefficients.imag
-    left = signals - basis @ np.concatenate([real, -imaginary])
-    beside = basis @ np.concatenate([imaginary, real])
-    size, rest = np.sum(weights * signals**2), np.sum(weights * (left**2 + beside**2))
-    return float(np.sqrt(rest / size)) if size > 0.0 else 1.0
+    real_rest = signals - basis @ np.concatenate([real, -imaginary])
+    imaginary_rest = basis @ np.concatenate([imaginary, real])
+    square = np.sum(weights * signals**2)
+    rest = np.sum(weights * (real_rest**2 + imaginary_rest**2))
+    return float(np.sqrt(rest / square)) if square > 0.0 else 1.0
 
 
 def _basis(time: Instants, frequency: float, orders: list[int]) -> Array:
-    """Real parts of exp(2 pi i k f t) for all orders k, then the imaginary ones: (m, 2 orders).
+    """Return real, then imaginary parts of exp(2 pi i k f t) for all orders k: (m, 2 orders).
 
-    One exponential a sample and its powers are much quicker than one for each order, and products
-    of real numbers than those of complex ones.
+    Powers of one exponential a sample take less time than an exponential for each order, and real
+    products less than complex ones.
     """
-    once = np.exp(2j * np.pi * frequency * (time - np.mean(time)))[:, None]
-    powers = np.cumprod(np.broadcast_to(once, (len(time), MAX_HARMONICS)), axis=1)
-    powers = np.concatenate([np.ones_like(once), powers], axis=1)[:, np.abs(orders)]
+    first = np.exp(2j * np.pi * frequency * (time - np.mean(time)))[:, None]
+    powers = np.cumprod(np.broadcast_to(first, (len(time), MAX_HARMONICS)), axis=1)
+    powers = np.concatenate([np.ones_like(first), powers], axis=1)[:, np.abs(orders)]
     return np.concatenate([powers.real, np.sign(orders) * powers.imag], axis=1)
 
 
 def _resolved_orders(samples: int, cycles_per_sample: float) -> list[int]:
-    """Harmonics, lowest first, that fold to places of their own."""
+    """Return the orders of harmonics, lowest first, whose aliases the window resolves."""
     cycles = [difference * cycles_per_sample for difference in range(2 * MAX_HARMONICS + 1)]
-    apart = [abs(each - round(each)) * samples >= RESOLUTION for each in cycles]
+    resolved = [abs(value - round(value)) * samples >= RESOLUTION_CYCLES for value in cycles]
     chosen = [0]
     for order in (sign * k for k in range(1, MAX_HARMONICS + 1) for sign in (1, -1)):
-        if all(apart[abs(order - other)] for other in chosen):
+        if all(resolved[abs(order - other)] for other in chosen):
             chosen.append(order)
     return chosen

@@ -1,4 +1,4 @@
-"""Compiled weighted sums of harmonics with one another and with signals, and a fit by them."""
+"""Compiled weighted inner products of harmonics and signals, and the least-squares fit by them."""
 
 import math
 from typing import Any
@@ -12,7 +12,7 @@ from undula.jit.compilation import entry, kernel, overwrite
 def harmonic_sums(
     clock: Any, signals: Any, weights: Any, frequency: Any, even: Any, mixed: Any
 ) -> None:
-    """Add up all that a step of Gauss and Newton takes of the samples, in one pass.
+    """Add up the inner products that a Gauss-Newton step needs, in one pass over the samples.
 
     Parameters
     ----------
@@ -21,17 +21,17 @@ def harmonic_sums(
     signals
         z, complex, shape ``(m, channels)``.
     frequency
-        f; e_k stands for exp(2 pi i k f t).
+        f, with e_k = exp(2 pi i k f t).
     even
         Receives the sums of w e_k, w t e_k and w t^2 e_k for k = 0..2 K, shape ``(3, 2 K + 1)``.
     mixed
-        Receives those of w z conj(e_k) and then of w t z conj(e_k) for k = -K..K, shape ``(2,
-        channels, 2 K + 1)``.
+        Receives the sums of w z conj(e_k) and w t z conj(e_k) for k = -K..K, shape
+        ``(2, channels, 2 K + 1)``.
     """
     top, middle = even.shape[1], mixed.shape[2] // 2
     cosine, sine = np.empty(top), np.empty(top)
     real, imaginary = np.zeros((3, top)), np.zeros((3, top))
-    # Sums of products of real and imaginary parts, of which both signs of k are made.
+    # Sums of products of real and imaginary parts give the sums for both signs of k.
     products = np.zeros((2, signals.shape[1], 4, middle + 1))
     for j in range(clock.shape[0]):
         phase = 2.0 * math.pi * frequency * clock[j]
@@ -66,9 +66,9 @@ def harmonic_sums(
 
 @kernel
 def factor_gram(row: Any, lower: Any) -> None:
-    """Write to lower (n, n) the factor of Cholesky of the matrix with entries r_(j - i).
+    """Write to lower (n, n) the Cholesky factor of the Hermitian matrix with entries r_(j - i).
 
-    It is Hermitian, and `row` (n,) holds r_0, r_1 and so on.
+    `row` (n,) contains r_0, r_1, ...
     """
     for j in range(row.shape[0]):
         for i in range(j, row.shape[0]):
@@ -103,35 +103,38 @@ def times_gram(row: Any, x: Any, out: Any) -> None:
 
 
 @kernel
-def fit(row: Any, lower: Any, fitted: Any, left: Any, moved: Any, seen: Any, undone: Any) -> Any:
-    """Overwrite the sums of a signal with harmonics by its fit; return its pull and its steepness.
+def fit(
+    row: Any, lower: Any, fitted: Any, delayed: Any, rates: Any, product: Any, compensated: Any
+) -> Any:
+    """Overwrite the inner products of a signal by its fit; return gradient and curvature in f.
 
     Parameters
     ----------
     row, lower
-        The sums of harmonics with one another, shape ``(3, 2 K + 1)``, and the factor of the first.
+        The inner products of harmonics, shape ``(3, 2 K + 1)``, and the factor of the first row.
     fitted, left
-        The sums of the signal with harmonics, and those times t, shape ``(2 K + 1,)``.
+        The inner products of the signal with harmonics, without and with a factor t, shape
+        ``(2 K + 1,)``.
     moved
-        Receives the change of the coefficients in time.
+        Receives the coefficients of the time derivative of the fit.
     seen, undone
         Scratch.
     """
     top, pull, steepness = fitted.shape[0], 0.0, 0.0
     solve_gram(lower, fitted)
-    times_gram(row[1], fitted, seen)
+    times_gram(row[1], fitted, product)
     for k in range(top):
-        moved[k] = 2.0j * math.pi * (k - top // 2) * fitted[k]
-        pull += (np.conj(moved[k]) * (left[k] - seen[k])).real
-    times_gram(row[2], moved, seen)
+        rates[k] = 2.0j * math.pi * (k - top // 2) * fitted[k]
+        pull += (np.conj(rates[k]) * (delayed[k] - product[k])).real
+    times_gram(row[2], rates, product)
     for k in range(top):
-        steepness += (np.conj(moved[k]) * seen[k]).real
-    times_gram(row[1], moved, seen)
-    overwrite(undone, seen)
-    solve_gram(lower, undone)
-    # What a change of the coefficients could undo does not count.
+        steepness += (np.conj(rates[k]) * product[k]).real
+    times_gram(row[1], rates, product)
+    overwrite(compensated, product)
+    solve_gram(lower, compensated)
+    # The part of the change in f that a change of the coefficients compensates does not count.
     for k in range(top):
-        steepness -= (np.conj(seen[k]) * undone[k]).real
+        steepness -= (np.conj(product[k]) * compensated[k]).real
     return pull, steepness
 
 
@@ -146,18 +149,22 @@ def refine(
     tolerance: Any,
     farthest: Any,
 ) -> Any:
-    """Return a frequency after steps of Gauss and Newton, and whether it has stayed on its peak.
+    """Return a frequency after Gauss-Newton steps, and True if it has stayed on its peak.
 
     Parameters
     ----------
-    clock, signals, weights, frequency
-        As of `harmonic_sums`; the first guess.
+    clock, signals, weights
+        As in `harmonic_sums`.
+    frequency
+        First guess [cycles/T].
     harmonics
         K.
-    most, tolerance
-        So many steps at most, the last one no longer than the tolerance.
+    most
+        Largest number of steps.
+    tolerance
+        Length of the last step [cycles/T].
     farthest
-        From the first guess, to be on its peak.
+        Largest distance from the first guess on the same peak [cycles/T].
     """
     top, channels, start = 2 * harmonics + 1, signals.shape[1], frequency
     even = np.empty((3, top), dtype=np.complex128)
@@ -168,9 +175,9 @@ def refine(
         factor_gram(even[0], lower)
         pull, steepness = 0.0, 0.0
         for a in range(channels):
-            each = fit(even, lower, mixed[0, a], mixed[1, a], scratch[0], scratch[1], scratch[2])
-            pull += each[0]
-            steepness += each[1]
+            terms = fit(even, lower, mixed[0, a], mixed[1, a], scratch[0], scratch[1], scratch[2])
+            pull += terms[0]
+            steepness += terms[1]
         step = pull / steepness if steepness > 0.0 else 0.0
         frequency += step
         if not abs(frequency - start) <= farthest:
@@ -187,11 +194,11 @@ def refine(
 def judge_fit(
     clock: Any, signals: Any, weights: Any, frequency: Any, harmonics: Any, coefficients: Any
 ) -> Any:
-    """Write to coefficients (channels, 2 K + 1) the fit at a frequency, and judge it.
+    """Write the fit at a frequency to coefficients (channels, 2 K + 1), and measure its remainder.
 
-    Parameters are those of `refine`. Returns the weighted squares of the signals without their
-    means and of what the harmonics leave of them, the steepness of the fit, and the pull of what
-    they leave, largest over five weights, as `undula.analysis.observables.harmonics` has it.
+    The parameters are those of `refine`. Returns the weighted squares of the signals without their
+    means and of the remainder, the curvature of the fit in f, and the pull of the remainder on f,
+    largest over five weights, as `undula.analysis.observables.harmonics` describes it.
     """
     count, top, channels = clock.shape[0], 2 * harmonics + 1, signals.shape[1]
     even = np.empty((3, top), dtype=np.complex128)
@@ -200,7 +207,7 @@ def judge_fit(
     pulls = np.zeros((5, top), dtype=np.complex128)
     harmonic_sums(clock, signals, weights, frequency, even, mixed)
     factor_gram(even[0], lower)
-    size, rest, steepness = 0.0, 0.0, 0.0
+    square, rest, steepness = 0.0, 0.0, 0.0
     wave, turns = np.empty(top, dtype=np.complex128), 2.0 * math.pi / (clock[-1] - clock[0])
     for a in range(channels):
         mean = mixed[0, a, harmonics]
@@ -210,7 +217,7 @@ def judge_fit(
         coefficients[a] = mixed[0, a]
         for j in range(count):
             left, phase = signals[j, a], 2.0 * math.pi * frequency * clock[j]
-            size += weights[j] * abs(left - mean) ** 2
+            square += weights[j] * abs(left - mean) ** 2
             step = complex(math.cos(phase), math.sin(phase))
             wave[harmonics] = complex(1.0, 0.0)
             for k in range(harmonics, top - 1):
@@ -220,10 +227,10 @@ def judge_fit(
                 left -= coefficients[a, k] * wave[k]
             rest += weights[j] * abs(left) ** 2
             once, twice, root = turns * clock[j], 2.0 * turns * clock[j], math.sqrt(2.0)
-            swings = (1.0, math.cos(once), math.sin(once), math.cos(twice), math.sin(twice))
+            modulations = (1.0, math.cos(once), math.sin(once), math.cos(twice), math.sin(twice))
             for n in range(5):
-                part = weights[j] * clock[j] * swings[n] * (root if n > 0 else 1.0) * left
+                part = weights[j] * clock[j] * modulations[n] * (root if n > 0 else 1.0) * left
                 for k in range(top):
                     pulls[n, k] += np.conj(scratch[0, k] * wave[k]) * part
-    # Of i times what they would be: `fit` has left the changes in time there.
-    return size, rest, steepness, np.max(np.sum(np.abs(pulls.real), axis=1))
+    # The pulls lack a factor i, as `fit` has left the time derivatives in the scratch array.
+    return square, rest, steepness, np.max(np.sum(np.abs(pulls.real), axis=1))

@@ -1,11 +1,12 @@
-"""The fundamental frequency of sampled signals by a tapered fit of harmonics.
+"""Fundamental frequency of sampled signals by a tapered least-squares fit of harmonics.
 
 The model is z(t) = sum over k of c_k exp(2 pi i k f t), k = -K..K, with one set of c_k for each
-channel and one f for all. The fit is least squares under a Hann weight: the harmonics take what is
-periodic, even with two or three periods in the window, and the weight keeps what is not (other
-frequencies, a transient, a drift) from leaking into f. For each f the c_k solve a linear system,
-so one variable is left, refined by Gauss-Newton with the harmonics projected out.
-(Golub & Pereyra 1973 for the projection; Harris 1978 for the weights.)
+channel and one f for all. The harmonics represent the periodic part, even with two or three periods
+in the window; the Hann weight keeps other frequencies, transients and drifts from leaking into f.
+For each f the c_k solve a linear system; the remaining variable f is refined by Gauss-Newton with
+the harmonics projected out (variable projection).
+
+Sources: Golub & Pereyra (1973) for the projection, Harris (1978) for the weights.
 """
 
 from __future__ import annotations
@@ -18,14 +19,13 @@ from undula.analysis.observables.harmonic_sums import judge_fit, refine
 from undula.analysis.observables.spectrum import hann
 from undula.arrays import ComplexArray, Instants
 
-# More harmonics gain nothing: those of a smooth motion fall geometrically.
+# Largest number of harmonics: those of a smooth motion fall geometrically.
 MAX_HARMONICS = 6
-# The highest harmonic fitted stays this fraction of the sampling rate or below: Nyquist is 0.5.
-TOP_FREQUENCY = 0.45
-# From the peak of a spectrum Gauss-Newton gains two or more digits a step; ten are never needed.
+# Largest frequency of a fitted harmonic, as a share of the sampling rate (Nyquist: 0.5).
+MAX_CYCLES_PER_SAMPLE = 0.45
+# Largest number of Gauss-Newton steps: each gains two or more digits from the spectral peak on.
 NEWTON_STEPS = 10
-# Newton stops at a change of this many windings over the whole window: what is left is smaller by
-# those digits, and far below any noise.
+# Last Gauss-Newton step [cycles over the window]: the remaining error is far below any noise.
 NEWTON_TOLERANCE = 1e-11
 
 
@@ -36,13 +36,13 @@ class HarmonicFit:
     Attributes
     ----------
     frequency
-        The fundamental [cycles per unit of time], positive.
+        The fundamental [cycles/T], positive.
     coefficients
-        c_k, k = -K..K, shape ``(2 K + 1, channels)``; times count from the window's middle.
+        c_k, k = -K..K, shape ``(2 K + 1, channels)``, for times from the middle of the window.
     misfit
-        Weighted RMS of what the harmonics leave over that of the signal without its mean.
+        Weighted RMS of the remainder over that of the signal without its mean, from 0 to 1.
     floor
-        How far the remainder might pull the frequency; see ``_fitted``.
+        Estimated change of the frequency by the remainder [cycles/T]; see ``_fitted``.
     """
 
     frequency: float
@@ -52,9 +52,24 @@ class HarmonicFit:
 
 
 def harmonic_count(time: Instants, frequency: float, most: int = MAX_HARMONICS) -> int:
-    """How many harmonics of a frequency the sampling resolves, between 1 and ``most``."""
+    """Return the number of harmonics of a frequency that the sampling resolves.
+
+    Parameters
+    ----------
+    time
+        Equally spaced times [T], shape ``(m,)``.
+    frequency
+        Positive [cycles/T].
+    most
+        Largest number returned, at least 1.
+
+    Returns
+    -------
+    int
+        From 1 to ``most``.
+    """
     rate = (len(time) - 1) / (time[-1] - time[0])
-    resolved = min(TOP_FREQUENCY * rate / frequency, len(time) / 4.0)
+    resolved = min(MAX_CYCLES_PER_SAMPLE * rate / frequency, len(time) / 4.0)
     return int(min(most, max(1.0, resolved)))
 
 
@@ -71,11 +86,11 @@ def fit_harmonics(
     Parameters
     ----------
     time
-        Equally spaced times, shape ``(m,)``.
+        Equally spaced times [T], shape ``(m,)``.
     signals
-        Shape ``(m, channels)``; real signals are passed as complex ones.
+        Complex, shape ``(m, channels)``.
     frequency
-        First guess, positive, right to well within one winding over the window.
+        First guess, positive [cycles/T], with an error of less than one cycle over the window.
     harmonics
         Highest harmonic K, at least 1.
     taper
@@ -84,10 +99,10 @@ def fit_harmonics(
     Returns
     -------
     HarmonicFit or None
-        None when the refinement leaves the peak that it started on.
+        None when the refinement leaves the peak of the first guess.
     """
-    found = refined(time, signals, frequency, harmonics=harmonics, taper=taper)
-    return None if found is None else _fitted(time, signals, found, harmonics, taper)
+    fundamental = refined(time, signals, frequency, harmonics=harmonics, taper=taper)
+    return None if fundamental is None else _fitted(time, signals, fundamental, harmonics, taper)
 
 
 def refined(
@@ -99,12 +114,23 @@ def refined(
     taper: int = 1,
     steps: int = NEWTON_STEPS,
 ) -> float | None:
-    """Return the frequency alone that `fit_harmonics` finds, which is quicker.
+    """Return only the frequency that `fit_harmonics` finds, in less time.
 
-    One step is enough to tell to two digits by how much a frequency differs from the first guess.
+    Parameters
+    ----------
+    time, signals, frequency, harmonics, taper
+        As in `fit_harmonics`.
+    steps
+        Largest number of Gauss-Newton steps, at least 1: one gives the difference from the first
+        guess to two digits.
+
+    Returns
+    -------
+    float or None
+        Frequency [cycles/T]; None when the refinement leaves the peak of the first guess.
     """
     clock, span = _clock(time)
-    found, stayed = refine(
+    fundamental, stayed = refine(
         clock,
         np.ascontiguousarray(signals, dtype=np.complex128),
         hann(len(time), taper),
@@ -114,16 +140,27 @@ def refined(
         NEWTON_TOLERANCE / span,
         1.0 / span,
     )
-    return float(found) if stayed else None
+    return float(fundamental) if stayed else None
 
 
 def misfit_at(time: Instants, signals: ComplexArray, frequency: float, *, harmonics: int) -> float:
-    """Return the misfit of a fit of harmonics of a frequency that is not refined."""
+    """Return the misfit of a fit of harmonics at a fixed frequency.
+
+    Parameters
+    ----------
+    time, signals, frequency, harmonics
+        As in `fit_harmonics`.
+
+    Returns
+    -------
+    float
+        From 0 to 1, as in `HarmonicFit`.
+    """
     return _fitted(time, signals, frequency, harmonics, 1).misfit
 
 
 def _clock(time: Instants) -> tuple[Instants, float]:
-    """Return times from the middle on, and the length of the window."""
+    """Return times relative to the middle of the window, and its length."""
     return time - 0.5 * (time[0] + time[-1]), float(time[-1] - time[0])
 
 
@@ -132,24 +169,23 @@ def _fitted(
 ) -> HarmonicFit:
     """Return the fit at a frequency.
 
-    Its floor is the pull of the remainder on f, harmonic by harmonic, largest over five weights. At
-    f the pulls of all harmonics cancel, for so f was chosen. One by one they show harmonics that
-    are no exact multiples; under a weight that swings once or twice over the window they show
-    what the fit had no chance to remove. Only the part in quadrature pulls; the other is a change
-    of amplitude.
+    The floor is the sum of the pulls of the remainder on f over the harmonics, largest over five
+    weights. The signed pulls cancel at the fitted f; their moduli show harmonics that are not exact
+    multiples, and weights that oscillate once or twice over the window show what the fit could not
+    remove. Only the part in quadrature changes f; the other part changes the amplitude.
     """
-    found = np.empty((signals.shape[1], 2 * harmonics + 1), dtype=np.complex128)
-    size, rest, steepness, pull = judge_fit(
+    coefficients = np.empty((signals.shape[1], 2 * harmonics + 1), dtype=np.complex128)
+    square, rest, steepness, pull = judge_fit(
         _clock(time)[0],
         np.ascontiguousarray(signals, dtype=np.complex128),
         hann(len(time), taper),
         frequency,
         harmonics,
-        found,
+        coefficients,
     )
     return HarmonicFit(
         frequency=frequency,
-        coefficients=found.T,
-        misfit=float(np.sqrt(rest / size)) if size > 0.0 else 0.0,
+        coefficients=coefficients.T,
+        misfit=float(np.sqrt(rest / square)) if square > 0.0 else 0.0,
         floor=float(pull / steepness) if steepness > 0.0 else float("inf"),
     )

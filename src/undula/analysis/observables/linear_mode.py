@@ -1,11 +1,12 @@
-"""How the straight filament is approached or left: rate and frequency of the leading linear mode.
+"""Rate and frequency of the leading linear mode of a small motion about the straight state.
 
 Near the straight filament the transverse motion is a sum of modes exp(sigma t). Late in a decay,
-and early in a growth, one real mode or one complex pair is left. The samples, each with a later
-one beside it, then move in a space of one or two dimensions; the matrix that steps them there is
-fitted, its leading left eigenvector picks the mode out of the motion, and the slopes of that
-mode's log-amplitude and phase over the whole window give sigma.
-(Dynamic mode decomposition with delays: Schmid 2010; Tu et al. 2014.)
+and early in a growth, one real mode or one complex pair remains. Samples joined with later ones
+then span one or two dimensions. The matrix of the step in time is fitted there, its leading left
+eigenvector projects the motion on the mode, and the slopes of the log-amplitude and the phase of
+the mode over the whole window give sigma.
+
+Source: dynamic mode decomposition with delays, Schmid (2010); Tu et al. (2014).
 """
 
 from __future__ import annotations
@@ -22,15 +23,16 @@ from undula.analysis.observables.sample_sums import line_slope
 from undula.analysis.observables.shapes import arc_weights, as_shapes
 from undula.arrays import Array, Instants, Shapes
 
-# A second direction weaker than this is noise or a faster mode about to vanish: one mode is left.
-SECOND_DIRECTION = 1e-3
-# The lag between the paired samples, as a share of the time between zero crossings (or of the
-# window): long against the noise of neighbouring samples, short against half a swing.
+# Least relative strength of the second direction; a weaker one is noise or a faster mode that
+# vanishes, and one real mode is fitted.
+MIN_SECOND_DIRECTION = 1e-3
+# Lag between paired samples, as a share of the time between zero crossings (or of the window): long
+# compared with the noise of neighbouring samples, short compared with half an oscillation.
 LAG_SHARE = 0.2
-# So many nodes tell one mode from another: a filament near straight moves in its longest waves, and
-# the matrix of what moves together costs the square of their number.
-NODES = 10
-# Fewer samples give the fit no remainder to judge it by.
+# Number of nodes in the fit: a filament near straight moves in its longest waves, and the matrix of
+# the correlations costs the square of the number.
+FITTED_NODES = 10
+# Least number of samples, which leave the fit a remainder.
 MIN_SAMPLES = 8
 
 
@@ -43,11 +45,11 @@ class LinearMotion:
     rate
         Growth rate [1/T], negative for a decay.
     rate_error
-        Larger difference between the rate and that of either half of the window [1/T].
+        Largest difference between the rate and the rates of the two halves of the window [1/T].
     frequency
-        Cycles per T; 0 for a monotone motion.
+        Frequency [cycles/T]; 0 for a monotone motion.
     crossings
-        Sign changes, over the window, of the mean deflection along the principal direction.
+        Sign changes over the window of the mean deflection along the principal direction.
     """
 
     rate: float
@@ -57,7 +59,7 @@ class LinearMotion:
 
     @property
     def rings(self) -> bool:
-        """Whether the motion was seen to swing through straight, and not just computed to."""
+        """True if the fit oscillates and the samples cross the straight state."""
         return self.frequency > 0.0 and self.crossings > 0
 
 
@@ -69,12 +71,12 @@ def linear_motion(time: Instants, nodes: Shapes) -> LinearMotion | None:
     time
         Equally spaced times [T], shape ``(m,)``.
     nodes
-        Node positions [L], shape ``(m, N + 1, 3)``; close to straight in every sample.
+        Node positions [L], shape ``(m, N + 1, 3)``, close to straight in every sample.
 
     Returns
     -------
     LinearMotion or None
-        None for fewer than 8 samples or a window in which nothing moves sideways.
+        None for fewer than 8 samples or a window with a sample that is exactly straight.
     """
     if len(time) < MIN_SAMPLES:
         return None
@@ -83,8 +85,8 @@ def linear_motion(time: Instants, nodes: Shapes) -> LinearMotion | None:
     if not moved:
         return None
     lag = max(1, int(LAG_SHARE * len(time) / (crossings + 1)))
-    apart = -(-(nodes.shape[1] - 1) // NODES)
-    logs, phases = _leading_amplitude(np.ascontiguousarray(along[:, :0:-apart]), lag)
+    stride = -(-(nodes.shape[1] - 1) // FITTED_NODES)
+    logs, phases = _amplitude_of_leading_mode(np.ascontiguousarray(along[:, :0:-stride]), lag)
     clock = np.ascontiguousarray(time[: len(logs)])
     half = len(clock) // 2
     rate, *rates = (
@@ -99,17 +101,17 @@ def linear_motion(time: Instants, nodes: Shapes) -> LinearMotion | None:
     )
 
 
-def _leading_amplitude(along: Array, lag: int) -> tuple[Array, Array]:
-    """Logarithm and phase of the amplitude of the slowest mode, up to constants."""
+def _amplitude_of_leading_mode(along: Array, lag: int) -> tuple[Array, Array]:
+    """Return logarithm and phase of the amplitude of the slowest mode, up to constants."""
     pairs = len(along) - lag
     even, sizes = np.empty((pairs, 2 * along.shape[1])), np.empty(pairs)
     pair(along, lag, even, sizes)
-    # The squares of singular values: quicker than these, and exact enough for the first two.
+    # Squared singular values take less time, and are accurate enough for the first two directions.
     width = even.shape[1]
     squares, directions, *_ = lapack.dsyevr(even.T @ even, range="I", il=width - 1, iu=width)
     path = even @ np.ascontiguousarray(directions[:, ::-1])
     vector = np.array([1.0, 0.0, 0.0])
-    if squares[0] > SECOND_DIRECTION**2 * squares[1]:
+    if squares[0] > MIN_SECOND_DIRECTION**2 * squares[1]:
         step = np.empty((2, 2))
         fit_step(path, sizes, lag, step)
         vector[:] = leading_vector(*step.ravel().tolist())
@@ -119,15 +121,23 @@ def _leading_amplitude(along: Array, lag: int) -> tuple[Array, Array]:
 
 
 def leading_vector(a: float, b: float, c: float, d: float) -> tuple[float, float, float]:
-    """Return an eigenvector of [[a, b], [c, d]] to the eigenvalue that is largest in size.
+    """Return an eigenvector of [[a, b], [c, d]] for the eigenvalue of largest modulus.
 
-    The first entry is real; the second has the real and the imaginary part that follow.
+    Parameters
+    ----------
+    a, b, c, d
+        Entries of the matrix.
+
+    Returns
+    -------
+    tuple of float
+        The first entry, which is real, then real and imaginary part of the second.
     """
     half = 0.5 * (a - d)
     square = half * half + b * c
     if square < 0.0:
         return b, -half, math.sqrt(-square)
     root = math.copysign(math.sqrt(square), a + d)
-    # Of the two rows that tell it, the one without cancellation.
+    # Both rows give the eigenvector; this one has no cancellation.
     first, second = (half + root, c) if half * root >= 0.0 else (b, root - half)
     return (first, second, 0.0) if first or second else (1.0, 0.0, 0.0)

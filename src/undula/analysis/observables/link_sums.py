@@ -11,9 +11,10 @@ from undula.jit.compilation import entry
     where=lambda chosen, c, k: c == 0 or (chosen.min() >= 0 and chosen.max() < k - 1),
 )
 def link_turns(nodes: Any, chosen: Any, angle: Any, turned: Any) -> None:
-    """Write how the chosen links turn between samples of nodes (m, N + 1, 3).
+    """Write the rotations of chosen links (c,) between samples of nodes (m, N + 1, 3).
 
-    To angle (k, m - 1) the angle [rad], to turned (k, m - 1, 2) the parts of its vector across z.
+    The angle [rad] is written to angle (c, m - 1), the x and y components of the rotation vector to
+    turned (c, m - 1, 2).
     """
     for i in range(chosen.shape[0]):
         link, x0, y0, z0 = chosen[i], 0.0, 0.0, 0.0

@@ -1,10 +1,11 @@
-"""Maxima of a sampled signal that rise clearly above the minima next to them."""
+"""Prominent maxima of a sampled signal."""
 
 import numpy as np
 
 from undula.arrays import Array
 
-#: A maximum rises above the minima next to it by this share of the whole swing; others are noise.
+#: Rise of a maximum above the minima next to it, as a share of the range of the signal; smaller
+#: ones are noise.
 PROMINENCE = 0.02
 
 
@@ -14,12 +15,17 @@ def prominent_maxima(values: Array, height: float) -> Array:
     Parameters
     ----------
     values
-        Samples, shape ``(m,)``.
+        Samples, shape ``(m,)``, m at least 1.
     height
-        At least 0.
+        Least rise, at least 0, in the unit of the values.
+
+    Returns
+    -------
+    Array
+        Shape ``(k,)``, rising.
     """
     rises = np.diff(values) > 0.0
-    found: list[int] = []
+    maxima: list[int] = []
     lowest, top = float(values[0]), -1
     for i in (np.flatnonzero(rises[1:] != rises[:-1]) + 1).tolist():
         if top < 0:
@@ -28,6 +34,6 @@ def prominent_maxima(values: Array, height: float) -> Array:
         elif values[i] > values[top]:
             top = i
         elif values[i] < values[top] - height:
-            found.append(top)
+            maxima.append(top)
             lowest, top = values[i], -1
-    return np.array(found, dtype=int)
+    return np.array(maxima, dtype=int)

@@ -5,8 +5,8 @@ import numpy as np
 from undula.analysis.observables.shapes import Range, envelope
 from undula.arrays import Array
 
-# Extremes are read from so many times more points than there are samples.
-_FINER = 8
+# Points of the interpolated period for each sample, from which extremes are taken.
+_OVERSAMPLING = 8
 
 
 def over_period(values: Array) -> Range:
@@ -15,13 +15,31 @@ def over_period(values: Array) -> Range:
     Parameters
     ----------
     values : ndarray of shape (m,)
-        Samples at equally spaced instants of one period, of which one end is left out.
+        Samples at equally spaced instants of one period without its end.
+
+    Returns
+    -------
+    Range
+        Extremes of the trigonometric interpolant, and the mean, in the unit of the values.
     """
-    fine = finely(values)
+    fine = oversampled(values)
     extremes = envelope(np.concatenate([fine[-1:], fine, fine[:1]]))
     return Range(extremes.min, extremes.max, float(np.mean(values)))
 
 
-def finely(values: Array) -> Array:
-    """Return the trigonometric polynomial through samples (m,) of a period at 8 m instants."""
-    return np.asarray(np.fft.irfft(np.fft.rfft(values), _FINER * values.size) * _FINER)
+def oversampled(values: Array) -> Array:
+    """Interpolate the samples of a period by a trigonometric polynomial.
+
+    Parameters
+    ----------
+    values : ndarray of shape (m,)
+        Samples at equally spaced instants of one period without its end.
+
+    Returns
+    -------
+    ndarray of shape (8 m,)
+        Values at equally spaced instants of the same period.
+    """
+    return np.asarray(
+        np.fft.irfft(np.fft.rfft(values), _OVERSAMPLING * values.size) * _OVERSAMPLING
+    )

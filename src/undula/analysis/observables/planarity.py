@@ -1,4 +1,4 @@
-"""How far a motion is from lying in one plane through the z axis."""
+"""Principal plane of a motion through the z axis, and distance of the motion from it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from undula.arrays import Array, Shapes
 
 
 def plane_angle(nodes: Shapes) -> float:
-    """Azimuth of the plane through z that holds most of the motion [rad], in (-pi/2, pi/2].
+    """Return the azimuth of the principal plane of a motion.
 
-    The principal axis of the 2 x 2 covariance of the transverse node positions about the z axis,
-    over all samples and, by arc length, over all nodes. In complex numbers it is half the argument
-    of the mean of (x + i y)^2. A motion without a preferred plane returns some angle all the same.
+    The plane is the principal axis of the 2 x 2 covariance of the transverse node positions about
+    the z axis, over all samples and, by arc length, over all nodes. In complex numbers its azimuth
+    is half the argument of the mean of (x + i y)^2. For a motion without a preferred plane the
+    azimuth has no meaning.
 
     Parameters
     ----------
@@ -26,14 +27,14 @@ def plane_angle(nodes: Shapes) -> float:
     Returns
     -------
     float
-        The angle from the x axis.
+        Angle from the x axis [rad], in (-pi/2, pi/2].
     """
     difference, product = second_moments(as_shapes(nodes), arc_weights(nodes.shape[-2]))
     return 0.5 * math.atan2(product, difference)
 
 
 def in_plane(nodes: Array, angle: float) -> tuple[Array, Array]:
-    """Transverse positions split into the parts within and across a plane through z [L].
+    """Split transverse positions into the parts within and across a plane through z.
 
     Parameters
     ----------
@@ -45,18 +46,18 @@ def in_plane(nodes: Array, angle: float) -> tuple[Array, Array]:
     Returns
     -------
     tuple of Array
-        The part along the plane and the part across it, each of shape ``(..., N + 1)``.
+        The part within the plane and the part across it [L], each of shape ``(..., N + 1)``.
     """
     turned = transverse(nodes) * np.exp(-1j * angle)
     return turned.real, turned.imag
 
 
 def planarity(nodes: Shapes) -> float:
-    """Out-of-plane part of the transverse motion, relative: 0 in one plane, 0.7071 on a circle.
+    """Return the out-of-plane share of the transverse motion.
 
-    The RMS distance of the nodes from the best plane through the z axis over their RMS distance
-    from that axis: the root of the smaller eigenvalue's share of the 2 x 2 transverse covariance.
-    Computed from the distances themselves, so that an exactly planar motion gives zero to rounding.
+    It is the RMS distance of the nodes from the principal plane over their RMS distance from the z
+    axis: the square root of the share of the smaller eigenvalue in the 2 x 2 transverse covariance.
+    It is computed from the distances, so that a planar motion gives 0 to round-off.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ def planarity(nodes: Shapes) -> float:
     Returns
     -------
     float
-        Between 0 and 1/sqrt(2); 0 for a filament that never leaves the axis.
+        From 0 in one plane to 1/sqrt(2) on a circle; 0 for a filament that stays on the axis.
     """
     shapes, weights = as_shapes(nodes), arc_weights(nodes.shape[-2])
     along, across = squares_in_plane(shapes, weights, plane_angle(shapes))

@@ -1,7 +1,7 @@
-"""How a motion to and fro goes round the axis, and on which side of its plane it is.
+"""Precession of an oscillation about the z axis, and alternation between the sides of its plane.
 
-The plane of a beat is the direction in which it swings about its mean. With w = x + i y from the
-mean, that is half the angle of the sum of w^2 over the nodes, smoothed over a beat.
+The plane of a beat is the direction of the oscillation about the mean. With w = x + i y from the
+mean, its azimuth is half the argument of the sum of w^2 over the nodes, smoothed over a beat.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ from undula.analysis.observables.shapes import (
 from undula.analysis.observables.spectrum import hann
 from undula.arrays import Array, Instants, Shapes
 
-# A kernel of fewer samples smooths nothing.
-_LEAST = 3
+# Least number of maxima for a measurement, and of samples in a smoothing kernel.
+_MIN_MAXIMA = 3
 
 
 @dataclass(frozen=True)
 class Precession:
-    """How a motion goes round, in turns and beats per T, turns positive from x to y.
+    """Rates of rotation and of beating of a motion.
 
     Attributes
     ----------
     tip_turns : float
-        Turns of the tip about z.
+        Turns of the mean position about z [1/T], positive from x to y.
     plane_turns : float
-        Turns of the plane of the beat about z.
+        Turns of the plane of the beat about z [1/T], positive from x to y.
     beats : float
-        Beats, of two maxima of the displacement each.
+        Beats, of two maxima of the displacement each [1/T].
     side_switching : float
-        Share of the maxima of the displacement that are on the other side of the plane of the beat
-        than the one before: 1 if the sides alternate, 0 if it stays on one of them.
+        Share of the maxima of the displacement at which the mean position has changed sides since
+        the previous maximum: 1 if the sides alternate, 0 if all are on one side.
     """
 
     tip_turns: float
@@ -49,7 +49,7 @@ class Precession:
 
 
 def precession(time: Instants, nodes: Shapes) -> Precession | None:
-    """Measure how a motion goes round; None with fewer than three maxima of its displacement.
+    """Measure the precession of a motion.
 
     Parameters
     ----------
@@ -57,49 +57,58 @@ def precession(time: Instants, nodes: Shapes) -> Precession | None:
         Equally spaced times [T], shape ``(m,)``.
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
+
+    Returns
+    -------
+    Precession or None
+        None with fewer than three maxima of the displacement.
     """
     away = displacement(nodes)
-    tops = prominent_maxima(away, PROMINENCE * float(np.ptp(away)))
-    if len(tops) < _LEAST:
+    maxima = prominent_maxima(away, PROMINENCE * float(np.ptp(away)))
+    if len(maxima) < _MIN_MAXIMA:
         return None
     span = float(time[-1] - time[0])
-    plane = plane_angle(nodes, len(tops))
-    smoothed_away = span * len(plane) / len(time)
+    plane = plane_angle(nodes, len(maxima))
+    plane_span = span * len(plane) / len(time)
     return Precession(
         tip_turns=float(azimuth(nodes)[-1] - azimuth(nodes)[0]) / (2.0 * np.pi * span),
-        plane_turns=float(plane[-1] - plane[0]) / (2.0 * np.pi * smoothed_away),
-        beats=0.5 * len(tops) / span,
-        side_switching=_switching(nodes, plane, tops),
+        plane_turns=float(plane[-1] - plane[0]) / (2.0 * np.pi * plane_span),
+        beats=0.5 * len(maxima) / span,
+        side_switching=_switching(nodes, plane, maxima),
     )
 
 
 def plane_angle(nodes: Shapes, maxima: int) -> Array:
-    """Return the azimuth of the plane of the beat [rad], shape (k,), k < m, without jumps.
+    """Return the azimuth of the plane of the beat, without jumps.
 
     Parameters
     ----------
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
     maxima
-        Maxima of the displacement in that time, two a beat. What is smoothed away, half a beat at
-        each end, is missing.
+        Number of maxima of the displacement in these samples, two a beat.
+
+    Returns
+    -------
+    Array
+        Shape ``(k,)``, k < m [rad]: the smoothing leaves out half a beat at each end.
     """
-    sides, weights = transverse(nodes), arc_weights(nodes.shape[1])
-    swing = sides - hann(len(sides)) @ sides
-    beat = max(_LEAST, 2 * len(sides) // max(1, maxima))
-    if beat > len(sides):
+    position, weights = transverse(nodes), arc_weights(nodes.shape[1])
+    swing = position - hann(len(position)) @ position
+    beat = max(_MIN_MAXIMA, 2 * len(position) // max(1, maxima))
+    if beat > len(position):
         return np.zeros(1)
     smooth = np.convolve(swing**2 @ weights, hann(beat), mode="valid")
     return np.asarray(0.5 * np.unwrap(np.angle(smooth)))
 
 
-def _switching(nodes: Shapes, plane: Array, tops: Array) -> float:
-    """Return how often the mean position changes sides from one maximum to the next."""
-    missing = (len(nodes) - len(plane)) // 2
-    seen = tops[(tops >= missing) & (tops < missing + len(plane))]
-    if len(seen) < 2:
+def _switching(nodes: Shapes, plane: Array, maxima: Array) -> float:
+    """Return the share of maxima at which the mean position has changed sides since the last."""
+    cut = (len(nodes) - len(plane)) // 2
+    inner = maxima[(maxima >= cut) & (maxima < cut + len(plane))]
+    if len(inner) < 2:
         return 0.0
     middle = transverse(mean_position(nodes))
     middle = middle - hann(len(middle)) @ middle
-    across = np.imag(middle[seen] * np.exp(-1j * plane[seen - missing]))
+    across = np.imag(middle[inner] * np.exp(-1j * plane[inner - cut]))
     return float(np.mean(across[1:] * across[:-1] < 0.0))

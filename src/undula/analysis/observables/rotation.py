@@ -1,9 +1,9 @@
-"""How a motion goes round: about the axis, or link by link about an axis across it.
+"""Rotation of a motion about the z axis, and of single links about transverse axes.
 
-The sense of rotation compares what is swept about the z axis with the way that is gone: 1 for a
-motion that goes round and round, 0 for one that goes to and fro. Links that windmill turn about a
-transverse axis: the vectors of their small turns then add up to one across z, while those of a link
-that swings cancel and those of a spinning one point along z.
+The sense of rotation is the signed area swept about the z axis relative to the path length: 1 for a
+rotation, 0 for an oscillation. A windmilling link rotates about a transverse axis: its small
+rotation vectors add up to a vector across z, while those of an oscillating link cancel and those of
+a spinning link point along z.
 """
 
 from __future__ import annotations
@@ -17,24 +17,24 @@ from undula.analysis.observables.shape_sums import lowest_links
 from undula.analysis.observables.shapes import as_shapes, transverse
 from undula.arrays import Array, Indices, Shapes
 
-#: Way of a link's direction over which its turning is added up, in full turns: a swing to and fro
-#: has cancelled by then, and the axis of a windmill has hardly moved.
-SPAN = 3.0
-#: Fewer spans than this show no lasting turning.
-FEWEST_SPANS = 3
-#: A link that turns by more between two samples, in the median, is not followed by them [rad].
-FOLLOWED = 1.0
+#: Path of a link's direction over which its rotation vectors are added up [turns]: an oscillation
+#: has cancelled by then, and the axis of a windmilling link has hardly moved.
+SPAN_TURNS = 3.0
+#: Least number of such spans from which a lasting rotation is concluded.
+MIN_SPANS = 3
+#: Largest median rotation of a link between two samples that resolve it [rad].
+MAX_LINK_TURN = 1.0
 
 
 @dataclass(frozen=True)
 class LinkRotation:
-    """How the links go round about axes across z, each array of shape ``(N,)``, base first.
+    """Rotation of the links about transverse axes, each array of shape ``(N,)``, base first.
 
     Attributes
     ----------
     coherence
-        Turning about a transverse axis over the way gone, median over spans of the motion: 1 for a
-        link that windmills, 0 for one that swings or spins.
+        Rotation about a transverse axis over the path length, median over spans of the motion: 1
+        for a windmilling link, 0 for an oscillating or a spinning one.
     turns
         Full turns about transverse axes in the window, counted span by span.
     """
@@ -44,39 +44,60 @@ class LinkRotation:
 
 
 def sense_of_rotation(nodes: Shapes) -> float:
-    """Rotation about z over motion across it, from -1 to 1, positive from x to y.
+    """Return the rotation about z relative to the transverse motion.
 
-    The sum over nodes of Im(conj(w) dw) over that of |w| |dw|, with w = x + i y: 1 for a turning
-    shape, 0 in a plane.
+    With w = x + i y, it is the sum of Im(conj(w) dw) over nodes and samples, divided by the sum of
+    |w| |dw|.
 
     Parameters
     ----------
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``, m at least 2, samples in order of time.
+
+    Returns
+    -------
+    float
+        From -1 to 1, positive from x to y: 1 for a rotating shape, 0 in a plane and without motion.
     """
-    sides = transverse(nodes)
-    middle, moved = 0.5 * (sides[1:] + sides[:-1]), np.diff(sides, axis=0)
-    way = float(np.sum(np.abs(middle) * np.abs(moved)))
-    return float(np.sum((middle.conj() * moved).imag)) / way if way > 0.0 else 0.0
+    position = transverse(nodes)
+    middle, change = 0.5 * (position[1:] + position[:-1]), np.diff(position, axis=0)
+    path = float(np.sum(np.abs(middle) * np.abs(change)))
+    return float(np.sum((middle.conj() * change).imag)) / path if path > 0.0 else 0.0
 
 
 def lowest_direction(nodes: Shapes) -> Array:
-    """Return the least z component of the direction of each link, shape ``(N,)``."""
+    """Return the least z component of the direction of each link.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(m, N + 1, 3)``.
+
+    Returns
+    -------
+    Array
+        Shape ``(N,)``, from -1 to 1, base first.
+    """
     lowest = np.empty(nodes.shape[1] - 1)
     lowest_links(as_shapes(nodes), lowest)
     return lowest
 
 
-def winding(nodes: Shapes, chosen: Indices) -> LinkRotation:
-    """Measure how links turn about axes across z.
+def link_rotation(nodes: Shapes, chosen: Indices) -> LinkRotation:
+    """Measure the rotation of links about transverse axes.
 
     Parameters
     ----------
     nodes
-        Node positions [L], shape ``(m, N + 1, 3)``, samples in order of time, dense enough for a
-        link to turn by less than half a turn in between.
+        Node positions [L], shape ``(m, N + 1, 3)``, samples in order of time, with less than half a
+        turn of a link between two of them.
     chosen
-        Indices of the links that are measured; the others are said not to turn.
+        Indices of the links that are measured, from 0 at the base.
+
+    Returns
+    -------
+    LinkRotation
+        With 0 for the links that are not measured.
     """
     angle, turned = (
         np.empty((len(chosen), len(nodes) - 1)),
@@ -85,18 +106,18 @@ def winding(nodes: Shapes, chosen: Indices) -> LinkRotation:
     link_turns(as_shapes(nodes), chosen, angle, turned)
     links = nodes.shape[1] - 1
     coherence, turns = np.zeros(links), np.zeros(links)
-    far = angle.sum(axis=1) > 2.0 * np.pi * SPAN * FEWEST_SPANS
+    far = angle.sum(axis=1) > 2.0 * np.pi * SPAN_TURNS * MIN_SPANS
     for i in np.flatnonzero(far).tolist():
-        spans, link = _spans(angle[i], turned[i]), chosen[i]
-        if len(spans) >= FEWEST_SPANS and np.median(angle[i]) <= FOLLOWED:
-            coherence[link], turns[link] = np.median(spans), SPAN * np.sum(spans)
+        spans, link = _span_turns(angle[i], turned[i]), chosen[i]
+        if len(spans) >= MIN_SPANS and np.median(angle[i]) <= MAX_LINK_TURN:
+            coherence[link], turns[link] = np.median(spans), SPAN_TURNS * np.sum(spans)
     return LinkRotation(coherence, turns)
 
 
-def _spans(angle: Array, turned: Array) -> Array:
-    """Return the transverse turning in successive spans of the way, each relative to the span."""
-    way = np.append(0.0, np.cumsum(angle)) / (2.0 * np.pi)
-    marks = np.arange(0.0, way[-1], SPAN)
+def _span_turns(angle: Array, turned: Array) -> Array:
+    """Return the transverse rotation in successive spans of the path, relative to the span."""
+    path = np.append(0.0, np.cumsum(angle)) / (2.0 * np.pi)
+    marks = np.arange(0.0, path[-1], SPAN_TURNS)
     total = np.vstack([np.zeros(2), np.cumsum(turned, axis=0)]) / (2.0 * np.pi)
-    at = np.stack([np.interp(marks, way, total[:, k]) for k in range(2)], axis=1)
-    return np.asarray(np.linalg.norm(np.diff(at, axis=0), axis=1) / SPAN)
+    at_marks = np.stack([np.interp(marks, path, total[:, k]) for k in range(2)], axis=1)
+    return np.asarray(np.linalg.norm(np.diff(at_marks, axis=0), axis=1) / SPAN_TURNS)

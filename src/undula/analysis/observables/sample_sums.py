@@ -8,9 +8,10 @@ from undula.jit.compilation import entry
 
 @entry("time (m), values (m)", where=lambda m: m > 0)
 def line_slope(time: Any, values: Any, tapered: Any) -> Any:
-    """Return the slope of the straight line nearest to values (m,), if tapered under a Hann weight.
+    """Return the slope of the least-squares line through values (m,) at equally spaced times (m,).
 
-    Equally spaced times and values count from the middle sample, whose round-off is then the least.
+    If tapered, under a Hann weight. Times and values are taken relative to the middle sample, which
+    reduces round-off.
     """
     count, middle = time.shape[0], time.shape[0] // 2
     total, first, second, level, product = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -27,7 +28,7 @@ def line_slope(time: Any, values: Any, tapered: Any) -> Any:
 
 @entry("values (m)")
 def mean_and_deviation(values: Any) -> Any:
-    """Return the mean of values (m,) and their standard deviation."""
+    """Return the mean and the standard deviation of values (m,)."""
     total, square = 0.0, 0.0
     for i in range(values.shape[0]):
         total += values[i]
@@ -39,7 +40,7 @@ def mean_and_deviation(values: Any) -> Any:
 
 @entry("values (m)", where=lambda m: m > 0)
 def extremes_and_mean(values: Any) -> Any:
-    """Return least and largest of values (m,) and of parabolas through their tops, and the mean."""
+    """Return the extremes of values (m,) and of parabolas through local extremes, and the mean."""
     least, largest, total = values[0], values[0], 0.0
     for i in range(values.shape[0]):
         least, largest = min(least, values[i]), max(largest, values[i])
@@ -58,7 +59,7 @@ def extremes_and_mean(values: Any) -> Any:
 
 @entry("first (m), second (m), gain (m), loss (m)")
 def largest_imbalance(first: Any, second: Any, gain: Any, loss: Any) -> Any:
-    """Return by how much two stores (m,) ever differ from what they were, plus gain, minus loss."""
+    """Return the largest imbalance of two energies (m,) with the gain and loss (m,) since start."""
     largest = 0.0
     for i in range(first.shape[0]):
         stored = first[i] + second[i] - (first[0] + second[0])
@@ -67,10 +68,11 @@ def largest_imbalance(first: Any, second: Any, gain: Any, loss: Any) -> Any:
 
 
 @entry("values (m), ahead (m)", where=lambda m: m > 0)
-def still_ahead(values: Any, share: Any, ahead: Any) -> Any:
-    """Write to ahead (m,) the largest of values (m,) from each on.
+def largest_ahead(values: Any, share: Any, ahead: Any) -> Any:
+    """Write to ahead (m,) the largest of the later values (m,) from each sample on.
 
-    Returns the last index of the largest of all, and how many are ahead by more than a share of it.
+    Returns the last index of the overall largest, and the number of samples whose entry in ahead is
+    more than a share of it.
     """
     last = values.shape[0] - 1
     largest = values[last]

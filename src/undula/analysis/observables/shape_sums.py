@@ -1,8 +1,8 @@
-"""Compiled sums over the nodes of many shapes, for arrays so small that calls would cost the most.
+"""Compiled sums over the nodes of many shapes, where array calls would cost more than the sums.
 
-Shapes are `nodes` (m, N + 1, 3) [L] and `weights` (N + 1,) those of a mean over the arc length. The
-functions around them, in `motion`, `observables`, `alignment`, `planes`, `turning` and `health`,
-say what they are good for.
+`nodes` (m, N + 1, 3) are shapes [L], `weights` (N + 1,) those of a mean over the arc length. The
+modules `trajectory`, `shapes`, `alignment`, `planarity` and `rotation` of this package, and
+`undula.analysis.runs.accuracy`, wrap them.
 """
 
 import math
@@ -14,27 +14,28 @@ from undula.jit.compilation import entry
 
 
 @entry(
-    "rows (m, n), places (k, 3) int, nodes (m, k, 3)",
-    where=lambda places, k, n: k == 0 or places.max() < n,
+    "rows (m, n), columns (k, 3) int, nodes (m, k, 3)",
+    where=lambda columns, k, n: k == 0 or columns.max() < n,
 )
-def gather(rows: Any, places: Any, nodes: Any) -> None:
-    """Write to nodes the numbers at places (N + 1, 3) of rows (m, n); 0 for a negative place."""
+def gather(rows: Any, columns: Any, nodes: Any) -> None:
+    """Write to nodes the entries of rows (m, n) at columns (N + 1, 3); 0 for a negative column."""
     for i in range(nodes.shape[0]):
         for k in range(nodes.shape[1]):
             for a in range(3):
-                nodes[i, k, a] = rows[i, places[k, a]] if places[k, a] >= 0 else 0.0
+                nodes[i, k, a] = rows[i, columns[k, a]] if columns[k, a] >= 0 else 0.0
 
 
-@entry("nodes (m, k, 3), places (k, 3), weights (k), out (m)")
-def distances_from(nodes: Any, places: Any, weights: Any, out: Any) -> None:
-    """Write to out (m,) how far each shape is from places (N + 1, 3), RMS over the arc length."""
-    # Coordinates in a row are added up several at once.
-    each = np.repeat(weights, 3)
-    rows, place = nodes.reshape(nodes.shape[0], each.shape[0]), places.reshape(each.shape[0])
+@entry("nodes (m, k, 3), reference (k, 3), weights (k), out (m)")
+def distances_from(nodes: Any, reference: Any, weights: Any, out: Any) -> None:
+    """Write to out (m,) the RMS distance over arc length of each shape from a reference."""
+    # A loop over contiguous coordinates is vectorised by the compiler.
+    repeated = np.repeat(weights, 3)
+    rows = nodes.reshape(nodes.shape[0], repeated.shape[0])
+    target = reference.reshape(repeated.shape[0])
     for i in range(rows.shape[0]):
         total = 0.0
-        for j in range(each.shape[0]):
-            total += each[j] * (rows[i, j] - place[j]) ** 2
+        for j in range(repeated.shape[0]):
+            total += repeated[j] * (rows[i, j] - target[j]) ** 2
         out[i] = math.sqrt(total)
 
 
@@ -55,9 +56,9 @@ def means(nodes: Any, weights: Any, out: Any) -> None:
     where=lambda a, b, m: (a == 1 or a == m) and (b == 1 or b == m),
 )
 def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> None:
-    """Write distance and angle (m,) of each pair of shapes after the best turn of the second.
+    """Write distance and angle (m,) of each pair of shapes after the best rotation of the second.
 
-    Either of the two may be one shape only.
+    Either of the two arrays may contain a single shape, common to all pairs.
     """
     for i in range(distance.shape[0]):
         a, b = first[min(i, first.shape[0] - 1)], second[min(i, second.shape[0] - 1)]
@@ -66,8 +67,8 @@ def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> N
             along += weights[k] * (a[k, 0] * b[k, 0] + a[k, 1] * b[k, 1])
             across += weights[k] * (a[k, 1] * b[k, 0] - a[k, 0] * b[k, 1])
         angle[i] = math.atan2(across, along)
-        size, total = math.sqrt(along * along + across * across), 0.0
-        cosine, sine = (along / size, across / size) if size > 0.0 else (1.0, 0.0)
+        modulus, total = math.sqrt(along * along + across * across), 0.0
+        cosine, sine = (along / modulus, across / modulus) if modulus > 0.0 else (1.0, 0.0)
         for k in range(weights.shape[0]):
             x = a[k, 0] - cosine * b[k, 0] + sine * b[k, 1]
             y = a[k, 1] - sine * b[k, 0] - cosine * b[k, 1]
@@ -76,27 +77,31 @@ def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> N
         distance[i] = math.sqrt(total)
 
 
-@entry("nodes (m, k, 3), place (k, 3), weights (k)")
-def largest_turned(nodes: Any, place: Any, weights: Any) -> Any:
-    """Return the largest distance of shapes from one (N + 1, 3), each after its best turn."""
-    each = np.repeat(weights, 3)
-    rows = nodes.reshape(nodes.shape[0], each.shape[0])
-    beside, across, above = np.zeros(each.shape), np.zeros(each.shape), np.zeros(each.shape)
+@entry("nodes (m, k, 3), reference (k, 3), weights (k)")
+def largest_aligned_distance(nodes: Any, reference: Any, weights: Any) -> Any:
+    """Return the largest distance of shapes from reference (N + 1, 3) after the best rotations."""
+    repeated = np.repeat(weights, 3)
+    rows = nodes.reshape(nodes.shape[0], repeated.shape[0])
+    along, across, heights = (
+        np.zeros(repeated.shape),
+        np.zeros(repeated.shape),
+        np.zeros(repeated.shape),
+    )
     for k in range(weights.shape[0]):
-        beside[3 * k], beside[3 * k + 1] = place[k, 0], place[k, 1]
-        across[3 * k], across[3 * k + 1] = -place[k, 1], place[k, 0]
-        above[3 * k + 2] = place[k, 2]
+        along[3 * k], along[3 * k + 1] = reference[k, 0], reference[k, 1]
+        across[3 * k], across[3 * k + 1] = -reference[k, 1], reference[k, 0]
+        heights[3 * k + 2] = reference[k, 2]
     largest = 0.0
     for i in range(rows.shape[0]):
         cosine, sine, square = 0.0, 0.0, 0.0
-        for j in range(each.shape[0]):
-            cosine += each[j] * rows[i, j] * beside[j]
-            sine += each[j] * rows[i, j] * across[j]
-        size = math.sqrt(cosine * cosine + sine * sine)
-        cosine, sine = (cosine / size, sine / size) if size > 0.0 else (1.0, 0.0)
-        for j in range(each.shape[0]):
-            turned = cosine * beside[j] + sine * across[j] + above[j]
-            square += each[j] * (rows[i, j] - turned) ** 2
+        for j in range(repeated.shape[0]):
+            cosine += repeated[j] * rows[i, j] * along[j]
+            sine += repeated[j] * rows[i, j] * across[j]
+        modulus = math.sqrt(cosine * cosine + sine * sine)
+        cosine, sine = (cosine / modulus, sine / modulus) if modulus > 0.0 else (1.0, 0.0)
+        for j in range(repeated.shape[0]):
+            turned = cosine * along[j] + sine * across[j] + heights[j]
+            square += repeated[j] * (rows[i, j] - turned) ** 2
         largest = max(largest, square)
     return math.sqrt(largest)
 
@@ -115,7 +120,7 @@ def second_moments(nodes: Any, weights: Any) -> Any:
 
 @entry("nodes (m, k, 3), weights (k)")
 def squares_in_plane(nodes: Any, weights: Any, angle: Any) -> Any:
-    """Return the weighted sums of squares along and across the plane at an azimuth."""
+    """Return the weighted sums of squares along and across the plane at an azimuth [rad]."""
     cosine, sine, along, across = math.cos(angle), math.sin(angle), 0.0, 0.0
     for i in range(nodes.shape[0]):
         for k in range(nodes.shape[1]):
@@ -127,7 +132,7 @@ def squares_in_plane(nodes: Any, weights: Any, angle: Any) -> Any:
 
 @entry("nodes (m, k, 3)")
 def link_squares(nodes: Any) -> Any:
-    """Return the least and the largest square of a link's length."""
+    """Return the least and the largest square of a link's length [L^2]."""
     least, largest = np.inf, 0.0
     for i in range(nodes.shape[0]):
         for k in range(1, nodes.shape[1]):
@@ -140,9 +145,9 @@ def link_squares(nodes: Any) -> Any:
 
 @entry("nodes (m, k, 3)")
 def largest_bend(nodes: Any) -> Any:
-    """Return the largest bend at any joint, the z axis before the first link.
+    """Return the largest square of the tangent of half the angle between neighbouring links.
 
-    That is the square of the tangent of half the angle between neighbouring links.
+    The z axis precedes the first link.
     """
     bend = 0.0
     for i in range(nodes.shape[0]):
@@ -155,9 +160,9 @@ def largest_bend(nodes: Any) -> Any:
             )
             length = math.sqrt(x * x + y * y + z * z)
             x, y, z = x / length, y / length, z / length
-            apart = (x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2
-            together = (x + x0) ** 2 + (y + y0) ** 2 + (z + z0) ** 2
-            bend = max(bend, apart / together)
+            difference = (x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2
+            total = (x + x0) ** 2 + (y + y0) ** 2 + (z + z0) ** 2
+            bend = max(bend, difference / total)
             x0, y0, z0 = x, y, z
     return bend
 

@@ -1,9 +1,8 @@
-"""What one reads off a trajectory, sample by sample.
+"""Positions, distances and extremes of shapes, sample by sample.
 
-Conventions shared by every function here: ``nodes`` has shape ``(..., N + 1, 3)`` in units of the
-length L, the base node first and at the origin; the straight filament lies along z. A mean over
-the filament is a mean over its arc length: the trapezoid rule over the nodes, which counts the two
-end nodes half and so tends to the integral with the square of the link length.
+``nodes`` has shape ``(..., N + 1, 3)`` in units of the length L, with the base node first and at
+the origin; the straight filament lies along z. A mean over the filament is a mean over the arc
+length by the trapezoid rule over the nodes, with an error of the square of the link length.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from undula.arrays import Array, ComplexArray, Instants, Shapes
 
 @lru_cache(maxsize=64)
 def arc_weights(count: int) -> Array:
-    """Weights of a mean over the arc length, one for each node; they cannot be written to.
+    """Return the weights of a mean over the arc length, one for each node.
 
     Parameters
     ----------
@@ -30,7 +29,7 @@ def arc_weights(count: int) -> Array:
     Returns
     -------
     Array
-        Shape ``(count,)``, trapezoid rule over equal links, sum 1.
+        Shape ``(count,)``, read-only: the trapezoid rule over equal links, with sum 1.
     """
     weights = np.full(count, 1.0 / (count - 1))
     weights[[0, -1]] *= 0.5
@@ -39,21 +38,34 @@ def arc_weights(count: int) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _straight_places(count: int) -> Array:
-    """Return the places (count, 3) of the nodes of the straight filament."""
-    places = np.zeros((count, 3))
-    places[:, 2] = np.linspace(0.0, 1.0, count)
-    places.setflags(write=False)
-    return places
+def _straight_nodes(count: int) -> Array:
+    """Return the nodes (count, 3) of the straight filament."""
+    nodes = np.zeros((count, 3))
+    nodes[:, 2] = np.linspace(0.0, 1.0, count)
+    nodes.setflags(write=False)
+    return nodes
 
 
 def as_shapes(nodes: Array) -> Shapes:
-    """Return nodes (..., N + 1, 3) as compiled sums take them: a contiguous (m, N + 1, 3)."""
+    """Return nodes as compiled sums take them.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(..., N + 1, 3)``.
+
+    Returns
+    -------
+    Shapes
+        The same in one contiguous array, shape ``(m, N + 1, 3)``.
+    """
     return np.ascontiguousarray(nodes, dtype=np.float64).reshape(-1, *nodes.shape[-2:])
 
 
 def transverse(nodes: Array) -> ComplexArray:
-    """Transverse position x + i y of every node, where a turn about z is a factor exp(i angle).
+    """Return the transverse position x + i y of every node.
+
+    A rotation about z by an angle multiplies it by exp(i angle).
 
     Parameters
     ----------
@@ -69,23 +81,56 @@ def transverse(nodes: Array) -> ComplexArray:
 
 
 def tip_position(nodes: Array) -> Array:
-    """Position of the free end [L]: shape ``(..., 3)`` for nodes of shape ``(..., N + 1, 3)``."""
+    """Return the position of the free end.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(..., N + 1, 3)``.
+
+    Returns
+    -------
+    Array
+        Shape ``(..., 3)`` [L].
+    """
     return np.asarray(nodes[..., -1, :], dtype=np.float64)
 
 
 def tip_radius(nodes: Array) -> Array:
-    """Distance of the free end from the z axis [L], 0 to 1: shape ``(...)``."""
+    """Return the distance of the free end from the z axis.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(..., N + 1, 3)``.
+
+    Returns
+    -------
+    Array
+        Shape ``(...)``, from 0 to 1 [L].
+    """
     tip = tip_position(nodes)
     return np.asarray(np.hypot(tip[..., 0], tip[..., 1]), dtype=np.float64)
 
 
 def tip_height(nodes: Array) -> Array:
-    """Height of the free end over the base plane [L], -1 to 1, 1 when straight: shape ``(...)``."""
+    """Return the height of the free end over the base plane.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(..., N + 1, 3)``.
+
+    Returns
+    -------
+    Array
+        Shape ``(...)``, from -1 to 1, 1 for the straight filament [L].
+    """
     return np.asarray(tip_position(nodes)[..., 2], dtype=np.float64)
 
 
 def mean_position(nodes: Array) -> Array:
-    """Mean position of the filament over its arc length [L].
+    """Return the mean position of the filament over its arc length.
 
     Parameters
     ----------
@@ -95,18 +140,18 @@ def mean_position(nodes: Array) -> Array:
     Returns
     -------
     Array
-        Shape ``(..., 3)``; (0, 0, 1/2) for the straight filament.
+        Shape ``(..., 3)`` [L]; (0, 0, 1/2) for the straight filament.
     """
     shapes = as_shapes(nodes)
-    found = np.empty((len(shapes), 3))
-    means(shapes, arc_weights(nodes.shape[-2]), found)
-    return found.reshape(*nodes.shape[:-2], 3)
+    mean = np.empty((len(shapes), 3))
+    means(shapes, arc_weights(nodes.shape[-2]), mean)
+    return mean.reshape(*nodes.shape[:-2], 3)
 
 
 def displacement(nodes: Array) -> Array:
-    """How far the filament is from straight: RMS over the arc length of the nodes' distances [L].
+    """Return the distance from straight, RMS over the arc length.
 
-    Each node is compared with its own place on the straight filament of length 1 along z.
+    Each node is compared with its position on the straight filament along z.
 
     Parameters
     ----------
@@ -116,22 +161,22 @@ def displacement(nodes: Array) -> Array:
     Returns
     -------
     Array
-        Shape ``(...)``; 0 for the straight filament.
+        Shape ``(...)``, at least 0 [L]; 0 for the straight filament.
     """
     shapes, count = as_shapes(nodes), nodes.shape[-2]
-    found = np.empty(len(shapes))
-    distances_from(shapes, _straight_places(count), arc_weights(count), found)
-    return found.reshape(nodes.shape[:-2])
+    distance = np.empty(len(shapes))
+    distances_from(shapes, _straight_nodes(count), arc_weights(count), distance)
+    return distance.reshape(nodes.shape[:-2])
 
 
 def azimuth(nodes: Shapes) -> Instants:
-    """Azimuth of the mean position about z, followed continuously through time [rad].
+    """Return the azimuth of the mean position about z, continuous in time.
 
-    The angle is meaningful while the mean position keeps away from the axis and moves by less than
-    half a turn between samples. When it passes close to the axis the azimuth jumps by about half a
-    turn with a sign that depends on which side the axis was passed: for planar flapping, or for any
-    motion that changes sides, the accumulated angle then says nothing, and the integral of the
-    turning rate stored with the run (``rotation_angle``) is the quantity to use.
+    The angle has a meaning while the mean position stays away from the axis and turns by less than
+    half a turn between samples. At a passage next to the axis it jumps by about half a turn, with a
+    sign that depends on the side of the passage. For planar flapping, and for every motion that
+    changes sides, use the integral of the rate of rotation stored with the run
+    (``rotation_angle``).
 
     Parameters
     ----------
@@ -141,7 +186,7 @@ def azimuth(nodes: Shapes) -> Instants:
     Returns
     -------
     Instants
-        Shape ``(m,)``; starts in (-pi, pi], positive for a turn from x to y.
+        Shape ``(m,)`` [rad]; starts in (-pi, pi], grows for a rotation from x to y.
     """
     mean = mean_position(nodes)
     return np.asarray(np.unwrap(np.arctan2(mean[..., 1], mean[..., 0])), dtype=np.float64)
@@ -149,7 +194,13 @@ def azimuth(nodes: Shapes) -> Instants:
 
 @dataclass(frozen=True)
 class Range:
-    """Smallest, largest and mean value of a quantity over a window, in its own unit."""
+    """Smallest, largest and mean value of a quantity over a window.
+
+    Attributes
+    ----------
+    min, max, mean
+        In the unit of the quantity.
+    """
 
     min: float
     max: float
@@ -157,11 +208,11 @@ class Range:
 
 
 def envelope(values: Instants) -> Range:
-    """Range of a sampled smooth quantity, its extremes read between the samples.
+    """Return the range of a smooth quantity, with extremes interpolated between the samples.
 
-    A parabola through each sample that tops (or undercuts) its two neighbours gives the extreme
-    there, with an error of fourth order in the sampling step instead of second. The two ends of the
-    window are taken as they are.
+    A parabola through each local extreme of the samples and its two neighbours gives the extreme
+    with an error of fourth order in the sampling interval instead of second. The two ends of the
+    window are not interpolated.
 
     Parameters
     ----------
@@ -171,6 +222,6 @@ def envelope(values: Instants) -> Range:
     Returns
     -------
     Range
-        With the plain mean of the samples.
+        Extremes, and the plain mean of the samples, in the unit of the values.
     """
     return Range(*extremes_and_mean(np.ascontiguousarray(values, dtype=np.float64)))

@@ -1,4 +1,4 @@
-"""The first look at a sampled signal's frequency: a weighted spectrum and its highest line."""
+"""Hann weights, and the highest line of the weighted spectrum of a sampled signal."""
 
 from __future__ import annotations
 
@@ -8,15 +8,25 @@ import numpy as np
 
 from undula.arrays import Array, ComplexArray, Instants
 
-# Zero padding of the spectrum: its peak is then within 1/8 of the window's resolution.
-PADDING = 4
+# Zero padding of the spectrum, which gives its peak to 1/8 of the window's resolution.
+PADDING_FACTOR = 4
 
 
 @lru_cache(maxsize=64)
 def hann(count: int, power: int = 1) -> Array:
-    """Hann weight raised to a power at the middles of ``count`` equal cells, with sum 1.
+    """Return Hann weights at the middles of equal cells of a window.
 
-    A run asks for the same few again and again; they are remembered and cannot be written to.
+    Parameters
+    ----------
+    count
+        Number of cells, at least 1.
+    power
+        Power of the weight, at least 1.
+
+    Returns
+    -------
+    Array
+        Shape ``(count,)``, read-only, with sum 1.
     """
     weights = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** (2 * power)
     weights = np.asarray(weights / np.sum(weights), dtype=np.float64)
@@ -25,23 +35,23 @@ def hann(count: int, power: int = 1) -> Array:
 
 
 def spectral_peak(time: Instants, signals: ComplexArray) -> float:
-    """Frequency of the highest line of the summed power spectra, with its sign.
+    """Return the frequency of the highest line of the power spectrum, summed over channels.
 
     Parameters
     ----------
     time
-        Equally spaced times, shape ``(m,)``, m at least 2.
+        Equally spaced times [T], shape ``(m,)``, m at least 2.
     signals
         Shape ``(m, channels)``.
 
     Returns
     -------
     float
-        Cycles per unit of time, between minus and plus half the sampling rate.
+        Signed frequency [cycles/T], between minus and plus half the sampling rate.
     """
     weights = hann(len(time))[:, None]
     centred = weights * (signals - np.sum(weights * signals, axis=0))
-    count = PADDING * len(time)
+    count = PADDING_FACTOR * len(time)
     power = np.sum(np.abs(np.fft.fft(centred, count, axis=0)) ** 2, axis=1)
     step = (time[-1] - time[0]) / (len(time) - 1)
     return float(np.fft.fftfreq(count, step)[int(np.argmax(power))])

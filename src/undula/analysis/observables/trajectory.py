@@ -14,10 +14,18 @@ from undula.numerics.integration.system import RATES
 
 @dataclass(frozen=True)
 class Observed:
-    """Energies and powers of rows of a simulation, each (m,).
+    """Energies and powers at the samples of a simulation.
 
-    The powers take a solution for the velocities at every sample, which is ten times what the
-    energies cost. Few ask for them; so they are computed when somebody does.
+    The powers need the velocities at every sample, which costs ten times as much as the energies;
+    they are computed on first use.
+
+    Attributes
+    ----------
+    model : Model
+    unknowns : ndarray, shape (m, n)
+        Unknowns in the lab frame.
+    bending_energy, stretching_energy : ndarray, shape (m,)
+        Energies [B/L].
     """
 
     model: Model
@@ -27,7 +35,17 @@ class Observed:
 
     @classmethod
     def of(cls, model: Model, unknowns: Array) -> Self:
-        """Return those of unknowns (m, n)."""
+        """Return the energies and powers of samples.
+
+        Parameters
+        ----------
+        model : Model
+        unknowns : ndarray, shape (m, n)
+
+        Returns
+        -------
+        Observed
+        """
         return cls(model, unknowns, *model.energies(unknowns))
 
     @cached_property
@@ -36,16 +54,16 @@ class Observed:
 
     @property
     def active_power(self) -> Array:
-        """Rate of work of the load."""
+        """Power put in by the load [B/(L T)], shape (m,)."""
         return self._all.active_power
 
     @property
     def dissipation(self) -> Array:
-        """Rate of work against drag."""
+        """Power dissipated by drag [B/(L T)], shape (m,)."""
         return self._all.dissipation
 
     def part(self, chosen: slice) -> Self:
-        """Return those of some of the samples."""
+        """Return the energies and powers of a slice of the samples."""
         return type(self)(
             self.model,
             self.unknowns[chosen],
@@ -65,11 +83,11 @@ class Motion:
     nodes : ndarray, shape (m, N + 1, 3)
         Positions of all nodes in the lab, base first [L].
     rotation_angle : ndarray, shape (m,)
-        Integral of the rate of turning about the axis [rad].
+        Integral of the rate of rotation about the axis [rad].
     work, loss : ndarray, shape (m,)
         Energy put in by the load and dissipated by drag since the start [B/L].
     energetics : Energetics or Observed
-        Energies and powers, each (m,).
+        Energies [B/L] and powers [B/(L T)], each of shape (m,).
     """
 
     time: Instants
@@ -81,14 +99,37 @@ class Motion:
 
     @classmethod
     def of(cls, model: Model, time: Instants, states: Array) -> Self:
-        """Return what rows of a simulation (m, n + RATES) say about the model."""
+        """Return the trajectory of a model from samples of a simulation.
+
+        Parameters
+        ----------
+        model : Model
+        time : ndarray, shape (m,)
+            Equally spaced times [T].
+        states : ndarray, shape (m, n + RATES)
+            Unknowns and integrals at these times.
+
+        Returns
+        -------
+        Motion
+        """
         unknowns, integrals = states[:, :-RATES], states[:, -RATES:]
         angle, work, loss = integrals.T
         nodes = _nodes(model, states)
         return cls(time, nodes, angle, work, loss, Observed.of(model, unknowns))
 
     def late(self, start: float) -> Self:
-        """Return the part of the motion from a time on, whatever round-off says about its edge."""
+        """Return the part of the motion from a time on.
+
+        Parameters
+        ----------
+        start : float
+            First time [T]; a sample that precedes it by round-off alone is included.
+
+        Returns
+        -------
+        Motion
+        """
         part = slice(int(np.searchsorted(self.time, start - 1e-9 * abs(start))), None)
         return type(self)(
             self.time[part],
@@ -101,10 +142,10 @@ class Motion:
 
 
 def _nodes(model: Model, states: Array) -> Shapes:
-    """Return the nodes of rows of a simulation (m, n + RATES), at once."""
-    # The nodes of a vector that counts tell which unknown each coordinate is; 0 is none.
-    counted = np.arange(1.0, states.shape[1] - RATES + 1.0)
-    places = model.nodes(model.positions(counted)).astype(np.int64) - 1
-    nodes = np.empty((len(states), *places.shape))
-    gather(states, places, nodes)
+    """Return the nodes (m, N + 1, 3) of samples (m, n + RATES)."""
+    # The nodes of the vector 1, 2, 3, ... are the indices of their coordinates, plus 1.
+    numbered = np.arange(1.0, states.shape[1] - RATES + 1.0)
+    columns = model.nodes(model.positions(numbered)).astype(np.int64) - 1
+    nodes = np.empty((len(states), *columns.shape))
+    gather(states, columns, nodes)
     return nodes

@@ -11,9 +11,9 @@ from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.precession import plane_angle
 from undula.analysis.observables.rotation import (
     LinkRotation,
+    link_rotation,
     lowest_direction,
     sense_of_rotation,
-    winding,
 )
 from undula.analysis.observables.shapes import arc_weights, displacement, transverse
 from undula.analysis.observables.spectrum import hann
@@ -86,7 +86,7 @@ class LateWindow:
     @cached_property
     def winding(self) -> LinkRotation:
         """Turning of these links about axes across z."""
-        return winding(self.nodes, self.backwards)
+        return link_rotation(self.nodes, self.backwards)
 
     @property
     def plane_turn(self) -> float:

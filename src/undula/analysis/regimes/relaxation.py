@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from undula.analysis.observables.linear_mode import MIN_SAMPLES, LinearMotion, linear_motion
-from undula.analysis.observables.sample_sums import still_ahead
+from undula.analysis.observables.sample_sums import largest_ahead
 from undula.arrays import Instants, Shapes
 
 # Below this share of its peak the motion is left out: there the integration error takes over.
@@ -98,7 +98,7 @@ def straightening(time: Instants, nodes: Shapes, away: Instants) -> Straightenin
     """
     # The largest displacement still to come: swings through straight do not count as arrival.
     ahead = np.empty(len(away))
-    peak, stop = still_ahead(away, FLOOR, ahead)
+    peak, stop = largest_ahead(away, FLOOR, ahead)
     start = (peak + stop) // 2
     end = len(time) - max(1, round(END_SHARE * len(time)))
     late = slice(start, stop if peak < (1.0 - PEAK_SHARE) * len(time) else start)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from undula.analysis.observables.period_statistics import finely, over_period
+from undula.analysis.observables.period_statistics import oversampled, over_period
 from undula.analysis.observables.shapes import Range, mean_position, tip_height, transverse
 from undula.analysis.states.state import State
 from undula.arrays import Array, ComplexArray, Shapes
@@ -107,7 +107,7 @@ class Periodic(State):
         """Distance of the tip from the axis [L]."""
         # Near the axis the distance has a kink, which the path of the tip has not.
         across = self._turned_back(transverse(self.nodes[:, -1]))
-        return over_period(np.hypot(finely(across.real), finely(across.imag)))
+        return over_period(np.hypot(oversampled(across.real), oversampled(across.imag)))
 
     def _turned_back(self, across: ComplexArray) -> ComplexArray:
         """Return x + i y (m,) in a frame that turns with the motion, in which it is periodic."""

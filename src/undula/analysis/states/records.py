@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from undula.analysis.observables.period_statistics import finely, over_period
+from undula.analysis.observables.period_statistics import oversampled, over_period
 from undula.analysis.observables.shapes import Range, envelope, tip_height
 from undula.analysis.states.state import FixedShape, State, by_falling_real_part
 from undula.arrays import Array, ComplexArray, Shapes
@@ -188,7 +188,7 @@ class Flapping(State):
     @cached_property
     def tip_radius(self) -> Range:
         """Distance of the tip from the axis [L] over the period; 0 as it crosses the axis."""
-        sideways = finely(self.nodes[:, -1, 0])
+        sideways = oversampled(self.nodes[:, -1, 0])
         return Range(0.0, envelope(sideways).max, float(np.mean(np.abs(sideways))))
 
     @cached_property
