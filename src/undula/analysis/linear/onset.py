@@ -1,9 +1,9 @@
-"""The search for the forces at which the straight state starts to ring, and to oscillate.
+"""Search for the forces at which the straight state starts to ring, and to oscillate.
 
-All candidates come at once from a small pencil (`undula.numerics.linalg.bialternate`), are refined
-on the whole one, and checked: at each crossing as many eigenvalues lie beyond the axis as earlier
-ones have brought there. Should the first fail, or move with the resolution, the sign change of the
-leading rate is bracketed and bisected instead.
+A small pencil (`undula.numerics.linalg.bialternate`) gives all candidates at once. They are refined
+on the full pencil and verified by counting: at each crossing the number of growing eigenvalues has
+to equal the number that the earlier crossings account for. If the first crossing fails this test or
+depends on the resolution, the sign change of the leading rate is bracketed and bisected instead.
 """
 
 from dataclasses import dataclass, replace
@@ -19,27 +19,32 @@ from undula.numerics.linalg.bialternate import coalescences, crossings
 from undula.numerics.linalg.critical_points import CriticalPair, refine_coalescence, refine_crossing
 from undula.numerics.linalg.pencil import Pencil, eigenvalues
 
-# Sizes of the small pencils, tried in turn; a smaller one where eigenvalues meet.
-_SIZES, _SIZE_TO_MEET = (10, 16, 24), 8
-# A better resolution is tried unless thresholds are settled to this relative error.
-_SETTLED = 1e-12
-# A rate this small beside the frequency, or the slowest decay without a force, counts as 0; a
-# coalescence splits by the root of round-off.
-_ON_AXIS, _TOGETHER = 1e-7, 1e-4
-# A threshold or eigenvalue of an approximation is believed if it is right to this share.
-_BELIEVED = 0.01
-# Forces beyond this are searched only if a candidate lies there.
-_FARTHEST = 2.0**14
+# Numbers of unknowns of the small pencils for crossings, tried in turn, and for coalescences.
+_SMALL_PENCIL_SIZES, _COALESCENCE_PENCIL_SIZE = (10, 16, 24), 8
+# Relative error of the thresholds below which the resolution is not refined further.
+_RELATIVE_TOLERANCE = 1e-12
+# Largest rate on the axis, relative to the frequency or to the slowest decay without a force; and
+# largest relative gap of a coalescence, which the square root of round-off splits.
+_MAX_RATE_ON_AXIS, _MAX_COALESCENCE_GAP = 1e-7, 1e-4
+# Largest relative error of a threshold or eigenvalue of an approximation that is reported.
+_MAX_RELATIVE_ERROR = 0.01
+# Largest force that is searched without a candidate [B/L^2].
+_MAX_SEARCHED_FORCE = 2.0**14
 
 
 def find_onset(linearisation: Linearisation, later: int) -> Onset:
-    """Return the onset of a linearisation, resolved as finely as is worth it.
+    """Return the onset of a linearisation, refined until it has converged.
 
     Parameters
     ----------
     linearisation : Linearisation
     later : int
-        How many crossings after the first are wanted.
+        Number of crossings to compute after the first, at least 0.
+
+    Returns
+    -------
+    Onset
+        Forces [B/L^2] and frequencies [cycles/T], each with its error.
     """
     pairs = _first_pairs(linearisation, 1 + later)
     if pairs:
@@ -50,26 +55,52 @@ def find_onset(linearisation: Linearisation, later: int) -> Onset:
 
 
 def first_pair(linearisation: Linearisation) -> CriticalPair | None:
-    """Return the pair that crosses the axis first, None if none is found."""
+    """Return the pair that crosses the axis first.
+
+    Parameters
+    ----------
+    linearisation : Linearisation
+
+    Returns
+    -------
+    CriticalPair or None
+        None if no pair crosses the axis at the searched forces.
+    """
     pairs = _first_pairs(linearisation, 1) or _bracketed(linearisation)[1]
     return pairs[0] if pairs else None
 
 
 def leading(pencil: Pencil, force: float) -> complex:
-    """Return the leading eigenvalue under a force; of a pair, the one above the real axis."""
+    """Return the leading eigenvalue under a force.
+
+    Parameters
+    ----------
+    pencil : Pencil
+    force : float
+        Total follower force [B/L^2].
+
+    Returns
+    -------
+    complex
+        [1/T]; of a pair, the member with positive imaginary part.
+    """
     return complex(eigenvalues(pencil.stiffness(force), pencil.mass)[0])
 
 
 @dataclass(frozen=True)
 class _Ringing:
-    """Where the leading eigenvalue turns complex: at a coalescence, or overtaken in a bracket."""
+    """Force at which the leading eigenvalue becomes complex.
+
+    Either two real eigenvalues coalesce at `sigma`, or a pair overtakes the leading real eigenvalue
+    in the bracket.
+    """
 
     force: float
     sigma: float | None = None
     bracket: tuple[float, float] = (0.0, 0.0)
 
     def on(self, pencil: Pencil) -> tuple[float, float]:
-        """Return the force on a pencil, and its round-off; NaN if it is not found there."""
+        """Return the force on a pencil, and its round-off; NaN if this pencil has no such force."""
         if self.sigma is not None:
             refined = refine_coalescence(pencil, self.force, self.sigma)
             return (refined.p, refined.round_off) if refined else (np.nan, np.nan)
@@ -77,18 +108,18 @@ class _Ringing:
         if not ahead[0] < 0.0 < ahead[1]:
             return np.nan, np.nan
         round_off = 1e-13 * self.force
-        at = brentq(lambda p: _lead_of_pairs(pencil, p), *self.bracket, xtol=round_off)
-        return float(at), round_off
+        crossing = brentq(lambda p: _lead_of_pairs(pencil, p), *self.bracket, xtol=round_off)
+        return float(crossing), round_off
 
 
 def _first_pairs(linearisation: Linearisation, count: int) -> list[CriticalPair]:
-    """Return the first crossings, at most `count`; none if the first was not found for certain."""
+    """Return the first crossings, at most `count`; an empty list if the first is uncertain."""
     best: list[CriticalPair] = []
-    # Later crossings want more of the small pencil than the first one does.
-    for size in _SIZES if count == 1 else _SIZES[1:]:
+    # Later crossings need a larger pencil than the first one.
+    for size in _SMALL_PENCIL_SIZES if count == 1 else _SMALL_PENCIL_SIZES[1:]:
         guesses = crossings(linearisation.coarse(size))[: 2 * count + 1]
-        found = [refine_crossing(linearisation.pencil, *guess) for guess in guesses]
-        pairs = _distinct([pair for pair in found if pair is not None])
+        refined = [refine_crossing(linearisation.pencil, *guess) for guess in guesses]
+        pairs = _distinct([pair for pair in refined if pair is not None])
         best = max(best, _unbroken(linearisation.pencil, pairs[:count]), key=len)
         if len(best) == count:
             break
@@ -97,34 +128,35 @@ def _first_pairs(linearisation: Linearisation, count: int) -> list[CriticalPair]
 
 def _distinct(pairs: list[CriticalPair]) -> list[CriticalPair]:
     pairs = sorted(pairs, key=lambda pair: pair.p)
-    # Two guesses that are refined to the same crossing agree to round-off.
-    apart = [k == 0 or pair.p > pairs[k - 1].p * (1.0 + 1e-6) for k, pair in enumerate(pairs)]
-    return [pair for pair, kept in zip(pairs, apart, strict=True) if kept]
+    # Two guesses refined to the same crossing agree to round-off.
+    is_distinct = [k == 0 or pair.p > pairs[k - 1].p * (1.0 + 1e-6) for k, pair in enumerate(pairs)]
+    return [pair for pair, distinct in zip(pairs, is_distinct, strict=True) if distinct]
 
 
 def _unbroken(pencil: Pencil, pairs: list[CriticalPair]) -> list[CriticalPair]:
-    """Return the first crossings, up to where the growing eigenvalues tell of one missed."""
+    """Return the first crossings, up to the one where the count of growing eigenvalues fails."""
     growing = 0
     for k, pair in enumerate(pairs):
         values = eigenvalues(pencil.stiffness(pair.p), pencil.mass)
         noise = abs(pair.slope) * pair.round_off
-        if np.count_nonzero(values.real > max(_ON_AXIS * pair.omega, noise)) != growing:
+        if np.count_nonzero(values.real > max(_MAX_RATE_ON_AXIS * pair.omega, noise)) != growing:
             return pairs[:k]
         growing += 2 if pair.slope > 0.0 else -2
     return pairs
 
 
 def _bracketed(linearisation: Linearisation) -> tuple[Linearisation, list[CriticalPair], float]:
-    """Return the crossing below the first of 1, 2, 4, ... at which a mode grows, if there is one.
+    """Return the crossing below the first of the forces 1, 2, 4, ... at which a mode grows.
 
-    With it come the linearisation that it was found on, and the force up to which was searched.
+    Returns the linearisation on which it was computed, a list of at most one crossing, and the
+    largest searched force.
     """
     stable, force = 0.0, 1.0
-    while force <= _FARTHEST and np.isfinite(linearisation.pencil.stiffness(force)).all():
-        trusted = _trusted(linearisation, force)
-        if trusted is None:
+    while force <= _MAX_SEARCHED_FORCE and np.isfinite(linearisation.pencil.stiffness(force)).all():
+        accurate = _accurate_at(linearisation, force)
+        if accurate is None:
             break
-        linearisation = trusted
+        linearisation = accurate
         if _growth(linearisation.pencil, force) > 0.0:
             pairs = _bisected(linearisation.pencil, stable, force)
             return linearisation, pairs, pairs[-1].p if pairs else stable
@@ -132,24 +164,24 @@ def _bracketed(linearisation: Linearisation) -> tuple[Linearisation, list[Critic
     return linearisation, [], stable
 
 
-def _trusted(linearisation: Linearisation | None, force: float) -> Linearisation | None:
-    """Return a linearisation whose leading eigenvalue is right, None if it would be too fine."""
+def _accurate_at(linearisation: Linearisation | None, force: float) -> Linearisation | None:
+    """Return a linearisation with an accurate leading eigenvalue; None if none is affordable."""
     while linearisation is not None:
         compared = linearisation.companion()
-        # Links are the model itself, not an approximation of it.
+        # The links are the model, not an approximation of it.
         if compared is None or linearisation.method == "discrete":
             return linearisation
-        one, two = (leading(each.pencil, force) for each in (linearisation, compared[0]))
-        slow = max(abs(one), abs(leading(linearisation.pencil, 0.0)))
-        if compared[1] * abs(one - two) < _BELIEVED * slow:
+        own, other = (leading(item.pencil, force) for item in (linearisation, compared[0]))
+        slow = max(abs(own), abs(leading(linearisation.pencil, 0.0)))
+        if compared[1] * abs(own - other) < _MAX_RELATIVE_ERROR * slow:
             return linearisation
         linearisation = linearisation.finer()
     return None
 
 
 def _growth(pencil: Pencil, force: float) -> float:
-    """Return the leading rate, less what round-off may make of one that is nearly 0."""
-    return leading(pencil, force).real - _ON_AXIS * abs(leading(pencil, 0.0))
+    """Return the leading rate, less the largest rate that counts as 0."""
+    return leading(pencil, force).real - _MAX_RATE_ON_AXIS * abs(leading(pencil, 0.0))
 
 
 def _bisected(pencil: Pencil, stable: float, unstable: float) -> list[CriticalPair]:
@@ -159,39 +191,41 @@ def _bisected(pencil: Pencil, stable: float, unstable: float) -> list[CriticalPa
 
 
 def _ringing_force(linearisation: Linearisation, below: float) -> _Ringing | None:
-    """Return where the leading eigenvalue first turns complex, up to a force."""
+    """Return the first force up to a limit at which the leading eigenvalue becomes complex."""
     pencil = linearisation.pencil
-    meetings = [
-        (p, sigma) for p, sigma in coalescences(linearisation.coarse(_SIZE_TO_MEET)) if p < below
+    candidates = [
+        (p, sigma)
+        for p, sigma in coalescences(linearisation.coarse(_COALESCENCE_PENCIL_SIZE))
+        if p < below
     ]
-    forces = [0.0, *(p for p, _ in meetings), below]
+    forces = [0.0, *(p for p, _ in candidates), below]
     last = 0.0
     for k in range(len(forces) - 1):
         middle = 0.5 * (forces[k] + forces[k + 1])
         if leading(pencil, middle).imag > 0.0:
-            return _turning(pencil, meetings[k - 1] if k else None, (last, middle))
+            return _as_ringing(pencil, candidates[k - 1] if k else None, (last, middle))
         last = middle
     if leading(pencil, below).imag > 0.0:
-        # A little beyond, as another resolution has its crossing elsewhere.
-        return _turning(pencil, None, (last, 1.01 * below))
+        # A margin of one per cent, as the crossing of another resolution differs.
+        return _as_ringing(pencil, None, (last, 1.01 * below))
     return None
 
 
-def _turning(
-    pencil: Pencil, meeting: tuple[float, float] | None, bracket: tuple[float, float]
+def _as_ringing(
+    pencil: Pencil, coalescence: tuple[float, float] | None, bracket: tuple[float, float]
 ) -> _Ringing:
-    """Return how the leading eigenvalue turns complex in a bracket, which holds one meeting."""
-    if meeting is not None:
-        refined = refine_coalescence(pencil, *meeting)
+    """Return the coalescence of a bracket if the leading eigenvalue takes part, else the bracket."""
+    if coalescence is not None:
+        refined = refine_coalescence(pencil, *coalescence)
         if refined is not None:
             rate = leading(pencil, refined.p).real
-            if abs(rate - refined.sigma) < _TOGETHER * abs(rate):
+            if abs(rate - refined.sigma) < _MAX_COALESCENCE_GAP * abs(rate):
                 return _Ringing(refined.p, sigma=refined.sigma)
     return _Ringing(bracket[1], bracket=bracket)
 
 
 def _lead_of_pairs(pencil: Pencil, force: float) -> float:
-    """Return by how much the leading pair is ahead of the leading real eigenvalue."""
+    """Return the rate of the leading pair minus that of the leading real eigenvalue."""
     values = eigenvalues(pencil.stiffness(force), pencil.mass)
     return _first_rate(values[values.imag > 0.0]) - _first_rate(values[values.imag == 0.0])
 
@@ -201,7 +235,7 @@ def _first_rate(values: ComplexArray) -> float:
 
 
 def _resolved(linearisation: Linearisation, pairs: list[CriticalPair], searched_to: float) -> Onset:
-    """Return the onset with these crossings, on a finer linearisation where that is worth it."""
+    """Return the onset with these crossings, on a linearisation refined until it has converged."""
     ringing = _ringing_force(linearisation, pairs[0].p if pairs else searched_to)
     onset = _measured(linearisation, pairs, ringing, searched_to)
     while not _settled(onset) and (finer := linearisation.finer()) is not None:
@@ -211,20 +245,23 @@ def _resolved(linearisation: Linearisation, pairs: list[CriticalPair], searched_
             break
         linearisation = finer
         onset = _measured(linearisation, pairs, ringing, searched_to)
-    return onset if linearisation.method == "discrete" else _believed(onset)
+    return onset if linearisation.method == "discrete" else _without_inaccurate(onset)
 
 
-def _believed(onset: Onset) -> Onset:
-    """Return an onset without crossings that the approximation has and the filament may not."""
-    known = list(takewhile(_is_believed, _found(onset)))
-    if known == _found(onset):
+def _without_inaccurate(onset: Onset) -> Onset:
+    """Return an onset up to the last crossing that is accurate enough to be one of the filament."""
+    accurate = list(takewhile(_is_accurate, _crossings_of(onset)))
+    if accurate == _crossings_of(onset):
         return onset
-    hopf, searched_to = (known[0], known[-1].force) if known else (None, 0.0)
-    return replace(onset, hopf=hopf, later=tuple(known[1:]), searched_to=searched_to)
+    hopf, searched_to = (accurate[0], accurate[-1].force) if accurate else (None, 0.0)
+    return replace(onset, hopf=hopf, later=tuple(accurate[1:]), searched_to=searched_to)
 
 
-def _is_believed(one: Crossing) -> bool:
-    return max(one.error / one.force, one.frequency_error / one.frequency) < _BELIEVED
+def _is_accurate(crossing: Crossing) -> bool:
+    return (
+        max(crossing.error / crossing.force, crossing.frequency_error / crossing.frequency)
+        < _MAX_RELATIVE_ERROR
+    )
 
 
 def _measured(
@@ -233,7 +270,7 @@ def _measured(
     ringing: _Ringing | None,
     searched_to: float,
 ) -> Onset:
-    """Return the onset on a linearisation, with errors from its companion."""
+    """Return the onset on a linearisation, with errors by comparison with its companion."""
     other, factor = linearisation.companion() or (None, 0.0)
     compared = other.pencil if other else None
     measured = [_crossing(compared, factor, pair) for pair in pairs]
@@ -262,14 +299,14 @@ def _crossing(compared: Pencil | None, factor: float, pair: CriticalPair) -> Cro
 
 
 def _differences(compared: Pencil, pair: CriticalPair) -> tuple[float, float]:
-    """Return by how much parameter and frequency of a crossing differ on another pencil."""
+    """Return the differences of the parameter and frequency of a crossing on another pencil."""
     values = eigenvalues(compared.stiffness(pair.p), compared.mass)
     nearest = values[np.argmin(np.abs(values - 1j * pair.omega))]
     p, omega = pair.p - nearest.real / pair.slope, float(nearest.imag)
     other = refine_crossing(compared, p, omega) if p > 0.0 else None
     if other is None:
-        away = abs(nearest - 1j * pair.omega)
-        return away / abs(pair.slope), away
+        distance = abs(nearest - 1j * pair.omega)
+        return distance / abs(pair.slope), distance
     return abs(other.p - pair.p), abs(other.omega - pair.omega)
 
 
@@ -290,11 +327,11 @@ def _ringing_measured(
 
 
 def _settled(onset: Onset) -> bool:
-    errors = [crossing.error / crossing.force for crossing in _found(onset)]
+    errors = [crossing.error / crossing.force for crossing in _crossings_of(onset)]
     if onset.oscillatory_force and onset.oscillatory_error:
         errors.append(onset.oscillatory_error / onset.oscillatory_force)
-    return max(errors, default=0.0) <= _SETTLED
+    return max(errors, default=0.0) <= _RELATIVE_TOLERANCE
 
 
-def _found(onset: Onset) -> list[Crossing]:
+def _crossings_of(onset: Onset) -> list[Crossing]:
     return [] if onset.hopf is None else [onset.hopf, *onset.later]

@@ -1,4 +1,4 @@
-"""Linear stability of the straight state: spectra, thresholds, and both along a parameter.
+"""Linear stability of the straight state: spectra and thresholds, also along a parameter.
 
 Theory and sources: docs/theory/stability.md.
 """
@@ -24,49 +24,55 @@ from undula.errors import InputError
 from undula.models.model import Model
 from undula.numerics.linalg.pencil import Pencil, eigenpairs, eigenvalues
 
-#: Called with the number of points done and the number of all.
+#: Callback with the number of points done and the number of all points.
 Progress = Callable[[int, int], None]
 
-# A finer resolution is tried unless an eigenvalue is settled to this share of its size, or round-
-# off, which grows with the largest eigenvalue of interest, is reached.
-_SETTLED = 1e-12
+# Relative error of the leading eigenvalue below which the resolution is not refined further.
+_RELATIVE_TOLERANCE = 1e-12
 
 
 def onset(
     model: Model, *, method: Method | None = None, later: int = 2, paper_time: bool = False
 ) -> Onset:
-    """Return how the straight state loses stability as the force grows from 0.
+    """Return the loss of stability of the straight state as the force grows from 0.
 
     Parameters
     ----------
     model : Model
-        Its own force does not matter.
+        Its force does not enter.
     method : {"spectral", "modes", "discrete"}, optional
-        On polynomials, on the paper's assumed modes, or for the links as they are. By default
-        "spectral", or "discrete" for a model that stands for no continuous filament.
+        Discretisation: piecewise polynomials, the paper's assumed modes, or the links of the model.
+        By default "spectral", or "discrete" for a model without a continuous limit.
     later : int
-        How many crossings after the first to look for, at least 0.
+        Number of crossings to compute after the first, at least 0.
     paper_time : bool
-        Whether to give rates and frequencies as the paper's printed equation does, which carries
-        the drag ratio before the time derivative: smaller by that factor.
+        True for rates and frequencies of the paper's printed equation, which multiplies the time
+        derivative by the drag ratio: they are smaller by that factor.
 
     Returns
     -------
     Onset
-        Forces in B/L^2 and frequencies in cycles per T, each with its error.
+        Forces [B/L^2] and frequencies [cycles/T], each with its error.
 
     Raises
     ------
     InputError
-        An argument is out of its range, or the model does not know the method.
+        An argument is out of its range, or the model does not have the method.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> critical = un.onset(un.Filament(20, load=un.PointLoad(0.0)), later=0)
+    >>> round(critical.force, 4), round(critical.frequency, 4)
+    (37.6954, 30.4398)
     """
     if isinstance(later, bool) or not isinstance(later, int) or later < 0:
         raise InputError(f"later = {later!r} has to be a whole number, at least 0")
     slowness = _slowness(model, paper_time)
-    onset = find_onset(linearised(model, method), later)
-    slowed = [_slowed(crossing, slowness) for crossing in onset.later]
-    hopf = onset.hopf and _slowed(onset.hopf, slowness)
-    return replace(onset, hopf=hopf, later=tuple(slowed), paper_time=paper_time)
+    computed = find_onset(linearised(model, method), later)
+    slowed = [_slowed(crossing, slowness) for crossing in computed.later]
+    hopf = computed.hopf and _slowed(computed.hopf, slowness)
+    return replace(computed, hopf=hopf, later=tuple(slowed), paper_time=paper_time)
 
 
 def spectrum(
@@ -83,16 +89,28 @@ def spectrum(
     ----------
     model : Model
     force : float, optional
-        Total follower force [B/L^2], at least 0; by default the model's own.
+        Total follower force [B/L^2], at least 0; by default the force of the model.
     count : int
-        How many eigenvalues, at least 1; a complex pair is not split.
+        Number of eigenvalues, at least 1; one more where this would split a complex pair.
     method, paper_time
         As in `onset`.
+
+    Returns
+    -------
+    Spectrum
+        Eigenvalues [1/T] with their errors, and modes.
 
     Raises
     ------
     InputError
-        An argument is out of its range, or the model does not know the method.
+        An argument is out of its range, or the model does not have the method.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> leading = un.spectrum(un.Filament(20, load=un.PointLoad(25.0)), count=1)
+    >>> leading.rates.round(4), leading.frequencies.round(4)
+    (array([-88.5648, -88.5648]), array([16.6186, 16.6186]))
     """
     if isinstance(count, bool) or not isinstance(count, int) or count < 1:
         raise InputError(f"count = {count!r} has to be a whole number, at least 1")
@@ -102,7 +120,7 @@ def spectrum(
     linearisation = _resolved(linearised(model, method), force)
     pencil, slowness = linearisation.pencil, _slowness(model, paper_time)
     values, vectors = eigenpairs(_stiffness(pencil, force), pencil.mass)
-    # The upper one of a pair comes first: after an odd one its partner follows.
+    # The member of a pair with positive imaginary part is first, so its partner is the next one.
     count += 1 if values[:count][-1].imag > 0.0 else 0
     s, modes = linearisation.shape(vectors[:, :count])
     return Spectrum(
@@ -133,32 +151,46 @@ def growth_curve(
     model : Model
     forces : sequence of float
         Total follower forces [B/L^2], at least 0.
-    parameter, values : str and sequence of float, optional
-        Name of a parameter, such as "load.slope", and its values.
+    parameter : str, optional
+        Name of a second parameter, such as "load.slope".
+    values : sequence of float, optional
+        Values of the second parameter, in its unit.
     method, paper_time
         As in `onset`.
     progress : callable, optional
-        Called with the number of values done and of all.
+        Called with the number of values done and the number of all values.
+
+    Returns
+    -------
+    GrowthCurve
+        Rates [1/T] and frequencies [cycles/T] of shape (m,), or (k, m) with a second parameter.
 
     Raises
     ------
     InputError
-        An argument is out of its range, or the model does not know the method or the parameter.
+        An argument is out of its range, or the model does not have the method or the parameter.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> curve = un.growth_curve(un.Filament(20, load=un.PointLoad(0.0)), [10.0, 30.0])
+    >>> curve.rates.round(3)
+    array([-26.789, -54.618])
     """
     if (parameter is None) != (values is None):
         raise InputError("a parameter and its values go together; give both or none")
     forces = checked_forces(forces)
-    given = None if values is None else checked_values(values)
+    sampled = None if values is None else checked_values(values)
     models = [model]
-    if parameter is not None and given is not None:
-        models = models_along(model, parameter, given)
+    if parameter is not None and sampled is not None:
+        models = models_along(model, parameter, sampled)
     method = method or method_for_all(models)
     rows = []
-    for done, each in enumerate(models, start=1):
-        rows.append(_leading(each, forces, method) / _slowness(each, paper_time))
+    for done, variant in enumerate(models, start=1):
+        rows.append(_leading(variant, forces, method) / _slowness(variant, paper_time))
         if progress:
             progress(done, len(models))
-    leading = np.stack(rows) if given is not None else rows[0]
+    leading = np.stack(rows) if sampled is not None else rows[0]
     return GrowthCurve(
         forces=forces,
         rates=leading[..., 0],
@@ -166,7 +198,7 @@ def growth_curve(
         errors=leading[..., 2],
         method=method,
         parameter=parameter,
-        values=given,
+        values=sampled,
         paper_time=paper_time,
     )
 
@@ -182,55 +214,78 @@ def critical_curve(
 ) -> CriticalCurve:
     """Return the thresholds of the straight state against a parameter.
 
-    All are by one method: "discrete" if one of the models has no continuum.
+    All are computed by one method: "discrete" if one of the models has no continuous limit.
 
     Parameters
     ----------
     model : Model
     parameter : str
-        Its name, such as "load.slope" or "model.segments".
+        Name of the parameter, such as "load.slope" or "model.segments".
     values : sequence of float
+        Values of the parameter, in its unit.
     method, paper_time
         As in `onset`.
     progress : callable, optional
-        Called with the number of values done and of all.
+        Called with the number of values done and the number of all values.
+
+    Returns
+    -------
+    CriticalCurve
+        The onset at each value.
 
     Raises
     ------
     InputError
-        An argument is out of its range, or the model does not know the method or the parameter.
+        An argument is out of its range, or the model does not have the method or the parameter.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(20, load=un.LinearLoad(0.0, slope=0.0))
+    >>> un.critical_curve(model, "load.slope", [-1.0, 1.0]).forces.round(4)
+    array([181.1085,  50.4716])
     """
-    given = checked_values(values)
-    models = models_along(model, parameter, given)
+    sampled = checked_values(values)
+    models = models_along(model, parameter, sampled)
     method = method or method_for_all(models)
     onsets = []
-    for done, each in enumerate(models, start=1):
-        onsets.append(onset(each, method=method, later=0, paper_time=paper_time))
+    for done, variant in enumerate(models, start=1):
+        onsets.append(onset(variant, method=method, later=0, paper_time=paper_time))
         if progress:
             progress(done, len(models))
-    return CriticalCurve(parameter, given, tuple(onsets))
+    return CriticalCurve(parameter, sampled, tuple(onsets))
 
 
 def method_for_all(models: Sequence[Model]) -> Method:
-    """Return the method by which the onsets of several models can be compared."""
+    """Return the method that all of several models have.
+
+    Parameters
+    ----------
+    models : sequence of Model
+
+    Returns
+    -------
+    {"spectral", "discrete"}
+        "discrete" if one of them has no continuous limit.
+    """
     return "discrete" if any(model.continuum_load is None for model in models) else "spectral"
 
 
 def _resolved(linearisation: Linearisation, force: float) -> Linearisation:
-    """Return the linearisation, refined until its leading eigenvalue is settled."""
+    """Return the linearisation, refined until its leading eigenvalue has converged."""
     while True:
         pencil = linearisation.pencil
-        first = eigenvalues(_stiffness(pencil, force), pencil.mass)[:1]
+        leading = eigenvalues(_stiffness(pencil, force), pencil.mass)[:1]
         finer = linearisation.finer()
-        settled = _errors(linearisation, force, first)[0] <= _SETTLED * abs(first[0])
+        settled = _errors(linearisation, force, leading)[0] <= _RELATIVE_TOLERANCE * abs(leading[0])
         if finer is None or settled:
             return linearisation
         linearisation = finer
 
 
 def _errors(linearisation: Linearisation, force: float, values: ComplexArray) -> Array:
-    """Return the errors of eigenvalues under a force, from those of the companion."""
-    # What the eigenvalue solver itself may lose.
+    """Return the errors of eigenvalues under a force by comparison with the companion."""
+    # Error of the eigenvalue solver.
     round_off = 10.0 * np.finfo(float).eps * np.abs(values)
     compared = linearisation.companion()
     if compared is None:
@@ -242,7 +297,7 @@ def _errors(linearisation: Linearisation, force: float, values: ComplexArray) ->
 
 
 def _stiffness(pencil: Pencil, force: float) -> Array:
-    """Return the stiffness under a force that the links can bear."""
+    """Return the stiffness under a force, refusing one that turns extensible links inside out."""
     stiffness = pencil.stiffness(force)
     if not np.isfinite(stiffness).all():
         raise InputError(
@@ -258,9 +313,9 @@ def _leading(model: Model, forces: Array, method: Method | None) -> Array:
     pencil = linearisation.pencil
     rows = []
     for force in forces:
-        first = eigenvalues(_stiffness(pencil, force), pencil.mass)[:1]
-        error = _errors(linearisation, force, first)[0]
-        rows.append((first[0].real, abs(first[0].imag), error))
+        leading = eigenvalues(_stiffness(pencil, force), pencil.mass)[:1]
+        error = _errors(linearisation, force, leading)[0]
+        rows.append((leading[0].real, abs(leading[0].imag), error))
     return np.array(rows)
 
 
@@ -281,7 +336,7 @@ def _slowed(crossing: Crossing, slowness: float) -> Crossing:
 
 
 def _slowness(model: Model, paper_time: bool) -> float:
-    """Return by how much the paper's rates are smaller, if they are asked for."""
+    """Return the factor by which rates in the paper's time are smaller, else 1."""
     if not paper_time:
         return 1.0
     drag_ratio = getattr(model, "drag_ratio", None)
