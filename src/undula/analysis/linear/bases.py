@@ -1,8 +1,8 @@
-"""Functions that a small displacement of a clamped-free filament is expanded in.
+"""Basis functions for small displacements of a clamped-free filament.
 
-A basis gives the displacements y_i(s), which meet the clamp, y_i(0) = y_i'(0) = 0, and the
-curvatures u_i = y_i''. It is scaled so that the bending matrix int u_i u_j ds is the identity:
-all other matrices are then bounded, however many functions there are.
+A basis gives the displacements y_i(s) with y_i(0) = y_i'(0) = 0 at the clamp, and the curvatures
+u_i = y_i''. It is scaled so that the bending matrix int u_i u_j ds is the identity; all other
+matrices are then bounded for any number of functions.
 """
 
 from dataclasses import dataclass
@@ -21,29 +21,29 @@ class Basis(Protocol):
 
     @property
     def panels(self) -> Points:
-        """Edges of pieces on which `points` Gauss points integrate products of two functions."""
+        """Edges of the panels of the Gauss quadrature, from 0 to 1 [L]."""
 
     @property
     def points(self) -> int:
-        """Number of Gauss points on a piece."""
+        """Number of Gauss points on a panel, enough for products of two functions."""
 
     def evaluate(self, s: Points) -> tuple[Array, Array]:
-        """Return displacements and curvatures at s, each of shape (m, n)."""
+        """Return displacements and curvatures at arc lengths s (m,), each of shape (m, n)."""
 
 
 @dataclass(frozen=True)
 class LegendreElements:
-    """Curvatures that are polynomials on elements: converge exponentially if the load allows.
+    """Curvatures that are polynomials on elements, with exponential convergence for smooth loads.
 
-    Where the load is smooth on each element so is the curvature, which may jump between them: the
-    displacement is its double integral from the clamp, and nothing has to be matched.
+    The curvature is smooth on each element where the load is, and may jump between elements: the
+    displacement is its double integral from the clamp, so that no conditions couple the elements.
 
     Attributes
     ----------
     breaks : tuple of float
-        Inner edges of the elements, rising.
+        Inner edges of the elements, rising, between 0 and 1 [L].
     degree : int
-        Degree of the curvature on each element.
+        Degree of the curvature on each element, at least 0.
     """
 
     breaks: tuple[float, ...]
@@ -51,56 +51,61 @@ class LegendreElements:
 
     @property
     def panels(self) -> Points:
-        """The elements."""
+        """Edges of the elements, from 0 to 1 [L]."""
         return np.array([0.0, *self.breaks, 1.0])
 
     @property
     def points(self) -> int:
-        """Enough for the square of a displacement, with some to spare for the load."""
+        """Number of Gauss points, exact for the square of a displacement, and more for the load."""
         return self.degree + 12
 
     def evaluate(self, s: Points) -> tuple[Array, Array]:
-        """Return displacements and curvatures at s, each of shape (m, n)."""
+        """Return displacements and curvatures at arc lengths s (m,), each of shape (m, n)."""
         curvatures, displacements = legendre_elements(self.panels, self.degree, s)
         return displacements, curvatures
 
 
 @dataclass(frozen=True)
 class BeamModes:
-    """The free vibrations of a clamped-free beam: the assumed modes of the paper.
+    """Free vibrations of a clamped-free beam, the assumed modes of the paper.
 
     With cos a_n cosh a_n = -1 and b_n = (cos a_n + cosh a_n) / (sin a_n + sinh a_n),
 
         Phi_n(s) = cosh a_n s - cos a_n s - b_n (sinh a_n s - sin a_n s),    y_n = Phi_n / a_n^2.
 
-    The hyperbolic parts are written as one exponential that falls from the clamp and one that
-    falls from the tip, as their difference would be lost in round-off from n = 10 on.
+    The hyperbolic parts are written as an exponential that decays from the clamp and one that
+    decays from the tip: their difference would be lost in round-off from n = 10 on.
 
     Source: Ling, Guo & Kanso (2018), section "Linear stability analysis".
+
+    Attributes
+    ----------
+    count : int
+        Number of modes, at least 1.
     """
 
     count: int
 
     @property
     def panels(self) -> Points:
-        """One piece to a few mode lengths of the shortest mode."""
+        """Edges of equal panels, each a few wavelengths of the shortest mode long."""
         return np.linspace(0.0, 1.0, max(2, self.count // 4) + 1)
 
     @property
     def points(self) -> int:
-        """Enough for the square of the shortest mode on a piece, to round-off."""
+        """Number of Gauss points: the square of the shortest mode on a panel to round-off."""
         return 24
 
     @cached_property
     def roots(self) -> Array:
-        """The roots a_n > 0 of cos a cosh a = -1, shape (n,)."""
+        """Roots a_n > 0 of cos a cosh a = -1, shape (n,)."""
         middle = (np.arange(self.count) + 0.5) * np.pi
         return np.array(
             [brentq(lambda a: np.cos(a) + 1.0 / np.cosh(a), m - 0.5, m + 0.5) for m in middle]
         )
 
     def evaluate(self, s: Points) -> tuple[Array, Array]:
-        """Return displacements and curvatures at s, each of shape (m, n)."""
+        """Return displacements and curvatures at arc lengths s (m,), each of shape (m, n)."""
         a, s = self.roots, np.asarray(s)[:, None]
         decay = np.exp(-a)
         denominator = 1.0 + 2.0 * np.sin(a) * decay - decay**2  # 2 e^-a (sin a + sinh a)

@@ -214,7 +214,7 @@ def _ringing_force(linearisation: Linearisation, below: float) -> _Ringing | Non
 def _as_ringing(
     pencil: Pencil, coalescence: tuple[float, float] | None, bracket: tuple[float, float]
 ) -> _Ringing:
-    """Return the coalescence of a bracket if the leading eigenvalue takes part, else the bracket."""
+    """Return the coalescence in a bracket if it is one of the leading pair, else the bracket."""
     if coalescence is not None:
         refined = refine_coalescence(pencil, *coalescence)
         if refined is not None:

@@ -1,4 +1,4 @@
-"""The straight filament's small displacements as a matrix pencil in the force, in three ways.
+"""Matrix pencils of the linearised straight state in the force, by three discretisations.
 
     y'''' - Lambda(s) y'' + sigma y = 0,   y(0) = y'(0) = 0,   y''(1) = y'''(1) = 0
 
@@ -26,22 +26,22 @@ from undula.models.model import Model
 from undula.numerics.linalg.legendre import gauss
 from undula.numerics.linalg.pencil import LinearPencil, Pencil, reduced
 
-# More elements than this gain nothing that a higher degree would not give for less.
-_MOST_ELEMENTS = 12
-# Beyond this size an answer takes more than a second.
-_MOST_UNKNOWNS = 250
-# From here on the second answer, which tells the error, is taken from fewer links.
-_MANY_LINKS = 12
-# Points at which a mode of the continuum is given.
-_SHAPE = np.linspace(0.0, 1.0, 201)
+# Largest number of elements: beyond it a higher degree converges faster.
+_MAX_ELEMENTS = 12
+# Largest number of unknowns, for an answer within about a second.
+_MAX_UNKNOWNS = 250
+# Number of links from which the error is estimated with fewer links instead of more.
+_MIN_LINKS_TO_COARSEN = 12
+# Arc lengths at which a mode of the continuum is reported [L].
+_SHAPE_POINTS = np.linspace(0.0, 1.0, 201)
 
 
 class Linearisation(Protocol):
-    """One way to turn the straight state into a pencil, at one resolution."""
+    """A discretisation of the linearised straight state, at one resolution."""
 
     @property
     def method(self) -> Method:
-        """The name of the way."""
+        """Name of the discretisation."""
 
     @property
     def pencil(self) -> Pencil:
@@ -51,21 +51,28 @@ class Linearisation(Protocol):
         """Return a pencil of about `size` unknowns with nearly the same slow eigenvalues."""
 
     def companion(self) -> "tuple[Linearisation, float] | None":
-        """Return the same at another resolution, to tell the error; None if there is none.
+        """Return the same at another resolution, for an error estimate; None if there is no other.
 
-        With it comes the factor from the difference of two answers to the error of this one's.
+        The error is the difference of the two answers times the factor that is returned with it.
         """
 
     def finer(self) -> "Linearisation | None":
-        """Return the same at a higher resolution; None if there is none to choose."""
+        """Return the same at a higher resolution; None at the highest one."""
 
     def shape(self, vectors: ComplexArray) -> tuple[Points, ComplexArray]:
-        """Return arc lengths (m,) and, for vectors (n, k), their displacements (k, m)."""
+        """Return arc lengths (m,) [L] and the displacements (k, m) of vectors (n, k)."""
 
 
 @dataclass(frozen=True)
 class Polynomials:
-    """Galerkin's method on piecewise polynomials, with an error that falls exponentially."""
+    """Galerkin's method on piecewise polynomials, with exponential convergence in the degree.
+
+    Attributes
+    ----------
+    load : DensityLoad
+    degree : int
+        Degree of the curvature on each element, at least 1.
+    """
 
     load: DensityLoad
     degree: int
@@ -78,7 +85,7 @@ class Polynomials:
 
     @property
     def _basis(self) -> LegendreElements:
-        return LegendreElements(_thinned(self.load.breaks, _MOST_ELEMENTS), self.degree)
+        return LegendreElements(_thinned(self.load.breaks, _MAX_ELEMENTS), self.degree)
 
     def coarse(self, size: int) -> LinearPencil:
         """Return the pencil on two elements at most."""
@@ -91,9 +98,9 @@ class Polynomials:
         return replace(self, degree=2 * self.degree // 3), 1.0
 
     def finer(self) -> "Polynomials | None":
-        """Return the same at one and a half times the degree, as long as that is affordable."""
+        """Return the same at one and a half times the degree; None beyond the affordable size."""
         finer = replace(self, degree=3 * self.degree // 2)
-        return finer if finer.pencil.mass.shape[0] <= _MOST_UNKNOWNS else None
+        return finer if finer.pencil.mass.shape[0] <= _MAX_UNKNOWNS else None
 
     def shape(self, vectors: ComplexArray) -> tuple[Points, ComplexArray]:
         """Return arc lengths (m,) and displacements (k, m)."""
@@ -102,7 +109,14 @@ class Polynomials:
 
 @dataclass(frozen=True)
 class AssumedModes:
-    """Galerkin's method on the free vibrations of a clamped-free beam."""
+    """Galerkin's method on the free vibrations of a clamped-free beam.
+
+    Attributes
+    ----------
+    load : DensityLoad
+    count : int
+        Number of modes, at least 1.
+    """
 
     load: DensityLoad
     count: int
@@ -115,15 +129,17 @@ class AssumedModes:
 
     def coarse(self, size: int) -> LinearPencil:
         """Return the pencil on the first modes."""
-        whole, few = self.pencil, slice(size)
-        return LinearPencil(whole.base[few, few], whole.change[few, few], whole.mass[few, few])
+        pencil, kept = self.pencil, slice(size)
+        return LinearPencil(
+            pencil.base[kept, kept], pencil.change[kept, kept], pencil.mass[kept, kept]
+        )
 
     def companion(self) -> "tuple[AssumedModes, float]":
         """Return the same with two thirds of the modes."""
         return replace(self, count=2 * self.count // 3), 1.0
 
     def finer(self) -> None:
-        """Return None: more modes take longer than they are worth."""
+        """Return None: more modes cost more than the gain in accuracy is worth."""
 
     def shape(self, vectors: ComplexArray) -> tuple[Points, ComplexArray]:
         """Return arc lengths (m,) and displacements (k, m)."""
@@ -132,7 +148,12 @@ class AssumedModes:
 
 @dataclass(frozen=True)
 class Links:
-    """The equations of the links, linearised; any model has them."""
+    """The linearised equations of the links, which any model has.
+
+    Attributes
+    ----------
+    model : Model
+    """
 
     model: Model
     method: ClassVar[Method] = "discrete"
@@ -140,30 +161,30 @@ class Links:
     @cached_property
     def pencil(self) -> Pencil:
         """The pencil K(F) + sigma M, which is linear for rigid links."""
-        whole = _LinksPencil(self.model)
-        base, one, two = (whole.stiffness(force) for force in (0.0, 1.0, 2.0))
-        change = one - base
+        pencil = _LinksPencil(self.model)
+        base, unit, double = (pencil.stiffness(force) for force in (0.0, 1.0, 2.0))
+        change = unit - base
         round_off = 8.0 * np.finfo(float).eps * np.abs(base).max()
-        if np.abs(two - base - 2.0 * change).max() <= round_off:
-            return LinearPencil(base, change, whole.mass)
-        return whole
+        if np.abs(double - base - 2.0 * change).max() <= round_off:
+            return LinearPencil(base, change, pencil.mass)
+        return pencil
 
     def coarse(self, size: int) -> LinearPencil:
         """Return the pencil on the slowest modes without a force."""
         return reduced(self.pencil, size)
 
     def companion(self) -> "tuple[Links, float] | None":
-        """Return the same body made of two thirds or, if few, of twice the links.
+        """Return the same body with two thirds of the links or, if they are few, with twice those.
 
-        The error of a body that links stand for falls as 1/links^2, which makes the factor.
+        The factor follows from the error of the links as a model of the continuum, 1/links^2.
         """
         links = self.model.links
-        other = 2 * links // 3 if links >= _MANY_LINKS else 2 * links
+        other = 2 * links // 3 if links >= _MIN_LINKS_TO_COARSEN else 2 * links
         model = self.model.with_links(other)
         return None if model is None else (Links(model), 1.0 / abs((links / other) ** 2 - 1.0))
 
     def finer(self) -> None:
-        """Return None: the links are the model's own."""
+        """Return None: the number of links is that of the model."""
 
     def shape(self, vectors: ComplexArray) -> tuple[Points, ComplexArray]:
         """Return arc lengths of the nodes (m,) and their displacements (k, m)."""
@@ -173,7 +194,7 @@ class Links:
 
 @dataclass(frozen=True)
 class _LinksPencil:
-    """The pencil of a model's links; its stiffness need not be linear in the force."""
+    """The pencil of the links of a model, whose stiffness may be nonlinear in the force."""
 
     model: Model
 
@@ -186,29 +207,33 @@ class _LinksPencil:
         try:
             return model.linearised()[0]
         except InputError:
-            return np.full_like(self.mass, np.nan)  # pushed beyond their length
+            return np.full_like(self.mass, np.nan)  # extensible links turned inside out
 
     def slope(self, p: float) -> Array:
-        # Extensible links' stiffness bends over forces of the size of S > 1e3: the relative error
-        # is (step / S)^2.
+        # The stiffness of extensible links changes over forces of the order of the tensile
+        # stiffness S > 1e3; the relative error of the difference quotient is (step / S)^2.
         step = 1.0 if p >= 1.0 else 0.5 * p or 1.0
         below = max(0.0, p - step)
         return (self.stiffness(p + step) - self.stiffness(below)) / (p + step - below)
 
 
 def linearised(model: Model, method: Method | None = None) -> Linearisation:
-    """Return the linearisation of a model's straight state.
+    """Return the linearisation of the straight state of a model.
 
     Parameters
     ----------
     model : Model
     method : {"spectral", "modes", "discrete"}, optional
-        By default "spectral" if links stand for a continuous filament, else "discrete".
+        By default "spectral" if the model has a continuous limit, else "discrete".
+
+    Returns
+    -------
+    Linearisation
 
     Raises
     ------
     InputError
-        The method is none of these, or needs a continuum that the model has not.
+        The method is unknown, or needs a continuous limit that the model does not have.
     """
     if method is None:
         method = "discrete" if model.continuum_load is None else "spectral"
@@ -232,16 +257,16 @@ def _galerkin(load: DensityLoad, basis: Basis) -> LinearPencil:
 
 
 def _shape(basis: Basis, vectors: ComplexArray) -> tuple[Points, ComplexArray]:
-    displacements, _ = basis.evaluate(_SHAPE)
-    return _SHAPE, np.asarray((displacements @ vectors).T)
+    displacements, _ = basis.evaluate(_SHAPE_POINTS)
+    return _SHAPE_POINTS, np.asarray((displacements @ vectors).T)
 
 
 def _thinned(breaks: tuple[float, ...], pieces: int) -> tuple[float, ...]:
-    """Return at most `pieces` - 1 of the breaks, evenly picked."""
+    """Return at most `pieces` - 1 of the breaks, selected evenly."""
     if len(breaks) < pieces:
         return breaks
-    picked = np.linspace(0, len(breaks) - 1, pieces + 1)[1:-1]
-    return tuple(breaks[round(k)] for k in picked)
+    selected = np.linspace(0, len(breaks) - 1, pieces + 1)[1:-1]
+    return tuple(breaks[round(k)] for k in selected)
 
 
 def _continuum(model: Model) -> DensityLoad:
@@ -253,17 +278,17 @@ def _continuum(model: Model) -> DensityLoad:
     return model.continuum_load
 
 
-# Degree 24 leaves nothing but round-off at the first threshold of a smooth profile, 72 modes an
-# error in the eighth digit. What is left is measured in each answer.
-_FIRST_DEGREE, _MODES = 24, 72
+# Degree on a single element, which gives the first threshold of a smooth profile to round-off, and
+# number of modes, which gives it to eight digits. Each answer measures its own error.
+_FIRST_DEGREE, _MODE_COUNT = 24, 72
 
 _METHODS: Mapping[str, Callable[[Model], Linearisation]] = {
     "spectral": lambda model: _polynomials(_continuum(model)),
-    "modes": lambda model: AssumedModes(_continuum(model), _MODES),
+    "modes": lambda model: AssumedModes(_continuum(model), _MODE_COUNT),
     "discrete": Links,
 }
 
 
 def _polynomials(load: DensityLoad) -> Polynomials:
-    elements = len(_thinned(load.breaks, _MOST_ELEMENTS)) + 1
+    elements = len(_thinned(load.breaks, _MAX_ELEMENTS)) + 1
     return Polynomials(load, max(10, _FIRST_DEGREE // elements))

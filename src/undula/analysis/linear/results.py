@@ -1,7 +1,7 @@
-"""What linear stability answers: eigenvalues with modes, thresholds, and curves of both.
+"""Results of linear stability: eigenvalues with modes, thresholds, and curves of both.
 
-A small displacement across the axis is a sum of modes y(s) exp(sigma t). `rate` is Re sigma [1/T],
-`frequency` is |Im sigma| / (2 pi) [cycles per T]; a mode grows if its rate is positive.
+A small transverse displacement is a sum of modes y(s) exp(sigma t). `rate` is Re sigma [1/T],
+`frequency` is |Im sigma| / (2 pi) [cycles/T]; a mode grows if its rate is positive.
 """
 
 from dataclasses import dataclass
@@ -23,18 +23,18 @@ class Spectrum:
     force : float
         Total follower force F [B/L^2].
     values : ndarray of shape (k,)
-        Eigenvalues sigma [1/T], by falling real part; of a complex pair both are there.
+        Eigenvalues sigma [1/T], by falling real part, with both members of a complex pair.
     errors : ndarray of shape (k,)
         Estimated error of each [1/T].
     s : ndarray of shape (m,)
         Arc length [L], from the clamp to the tip.
     modes : ndarray of shape (k, m)
-        Displacement y(s) of each mode, complex, scaled to a largest modulus of 1 and turned to be
-        real and positive at the tip.
+        Complex displacement y(s) of each mode, with a largest modulus of 1 and a phase by which it
+        is real and positive at the tip.
     method : {"spectral", "modes", "discrete"}
-        How they were computed.
+        Discretisation.
     paper_time : bool
-        Whether rates and frequencies are slower by the drag ratio, as in the printed equation.
+        True if rates and frequencies are smaller by the drag ratio, as in the printed equation.
     """
 
     force: float
@@ -52,11 +52,11 @@ class Spectrum:
 
     @property
     def frequencies(self) -> Array:
-        """Frequencies [cycles per T], of shape (k,)."""
+        """Frequencies [cycles/T], of shape (k,)."""
         return np.asarray(np.abs(self.values.imag) / (2.0 * np.pi))
 
     def __str__(self) -> str:
-        """Tell it in one line."""
+        """Return the leading eigenvalue in one line."""
         leading = f"{self.rates[0]:.6g} /T at {self.frequencies[0]:.6g} cycles per T"
         return f"force {self.force:.6g}: leading rate {leading} (to {self.errors[0]:.1g})"
 
@@ -70,12 +70,13 @@ class Crossing:
     force, error : float
         The force [B/L^2] and its estimated error.
     frequency, frequency_error : float
-        Frequency of the pair [cycles per T] and its estimated error.
+        Frequency of the pair [cycles/T] and its estimated error.
     growth_slope : float
-        Change of the growth rate with the force [1/T per B/L^2]; negative where a pair calms down.
+        Change of the growth rate with the force [1/T per B/L^2]; negative where a pair becomes
+        stable.
     round_off : float
-        The part of the error of the force that is not the resolution's, which of links is their
-        number [B/L^2].
+        Part of the error of the force that does not depend on the resolution, or on the number of
+        links [B/L^2].
     """
 
     force: float
@@ -86,7 +87,7 @@ class Crossing:
     round_off: float = 0.0
 
     def __str__(self) -> str:
-        """Tell it in one line."""
+        """Return force and frequency with their errors in one line."""
         return (
             f"Hopf point at force {self.force:.12g} +- {self.error:.1g},"
             f" frequency {self.frequency:.12g} +- {self.frequency_error:.1g} cycles per T"
@@ -95,23 +96,23 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Onset:
-    """How the straight state loses stability as the force grows from 0.
+    """Loss of stability of the straight state as the force grows from 0.
 
     Attributes
     ----------
     hopf : Crossing or None
         The first crossing; None if the straight state stays stable.
     oscillatory_force, oscillatory_error : float or None
-        The least force at which the leading eigenvalue is complex [B/L^2], so that the filament
-        rings, and its estimated error; None if there is none up to `searched_to`.
+        The least force at which the leading eigenvalue is complex [B/L^2], so that disturbances
+        oscillate, and its estimated error; None without such a force up to `searched_to`.
     later : tuple of Crossing
         The crossings after the first, by force.
     searched_to : float
-        Up to this force [B/L^2] no crossing was missed.
+        Largest force up to which all crossings are known [B/L^2].
     method : {"spectral", "modes", "discrete"}
-        How it was computed.
+        Discretisation.
     paper_time : bool
-        Whether rates and frequencies are slower by the drag ratio, as in the printed equation.
+        True if rates and frequencies are smaller by the drag ratio, as in the printed equation.
     """
 
     hopf: Crossing | None
@@ -129,7 +130,7 @@ class Onset:
 
     @property
     def frequency(self) -> float | None:
-        """The frequency at the Hopf force [cycles per T], None without one."""
+        """The frequency at the Hopf force [cycles/T], None without one."""
         return self.hopf.frequency if self.hopf else None
 
     @property
@@ -138,7 +139,7 @@ class Onset:
         return self.hopf.error if self.hopf else None
 
     def __str__(self) -> str:
-        """Tell it in one line."""
+        """Return the threshold in one line."""
         if self.hopf is None:
             return f"straight and stable at every force up to {self.searched_to:.4g}"
         ringing = self.oscillatory_force
@@ -147,22 +148,22 @@ class Onset:
 
 @dataclass(frozen=True)
 class GrowthCurve:
-    """The leading eigenvalue against the force, and against a parameter if there is one.
+    """The leading eigenvalue against the force, and against a second parameter if one was given.
 
     Attributes
     ----------
     forces : ndarray of shape (m,)
         Total forces [B/L^2].
     rates, frequencies, errors : ndarray of shape (m,), or (k, m) with a parameter
-        Rate [1/T], frequency [cycles per T] and estimated error of the eigenvalue [1/T].
+        Rate [1/T], frequency [cycles/T] and estimated error of the eigenvalue [1/T].
     method : {"spectral", "modes", "discrete"}
-        How they were computed.
+        Discretisation.
     parameter : str or None
-        Name of the parameter, such as "load.slope".
+        Name of the second parameter, such as "load.slope".
     values : ndarray of shape (k,) or None
-        Its values.
+        Values of the second parameter, in its unit.
     paper_time : bool
-        Whether rates and frequencies are slower by the drag ratio, as in the printed equation.
+        True if rates and frequencies are smaller by the drag ratio, as in the printed equation.
     """
 
     forces: Array
@@ -184,9 +185,9 @@ class CriticalCurve:
     parameter : str
         Name of the parameter, such as "load.slope".
     values : ndarray of shape (k,)
-        Its values.
+        Values of the parameter, in its unit.
     onsets : tuple of Onset
-        The answer at each value.
+        The onset at each value.
     """
 
     parameter: str
@@ -200,7 +201,7 @@ class CriticalCurve:
 
     @property
     def frequencies(self) -> Array:
-        """Frequencies at the Hopf forces [cycles per T], of shape (k,)."""
+        """Frequencies at the Hopf forces [cycles/T], of shape (k,)."""
         return self._of_hopf("frequency")
 
     @property
@@ -217,12 +218,15 @@ class CriticalCurve:
     def oscillatory_forces(self) -> Array:
         """Least forces at which the leading eigenvalue is complex [B/L^2], of shape (k,)."""
         return np.array(
-            [np.nan if o.oscillatory_force is None else o.oscillatory_force for o in self.onsets]
+            [
+                np.nan if onset.oscillatory_force is None else onset.oscillatory_force
+                for onset in self.onsets
+            ]
         )
 
     @property
     def method(self) -> Method:
-        """How the thresholds were computed."""
+        """Discretisation by which the thresholds were computed."""
         return self.onsets[0].method
 
     def _of_hopf(self, name: str) -> Array:

@@ -1,4 +1,4 @@
-"""The straight state followed along a parameter: its growth rate, and where that changes sign."""
+"""Branch of straight states along a parameter: growth rates and Hopf points."""
 
 from dataclasses import dataclass
 
@@ -11,8 +11,9 @@ from undula.analysis.states.along_parameter import model_along
 from undula.arrays import Array
 from undula.models.model import Model
 
-# Points of a branch: between two of them the rate is taken to change its sign at most once.
-_POINTS = 201
+# Number of points of a branch; between two of them the rate is assumed to change its sign at most
+# once.
+_POINT_COUNT = 201
 
 
 @dataclass(frozen=True)
@@ -24,13 +25,13 @@ class StraightBranch:
     parameter : str
         Name of the parameter.
     values : ndarray of shape (m,)
-        Its values.
+        Values of the parameter, in its unit.
     rates, frequencies : ndarray of shape (m,)
-        Of the leading disturbance [1/T] and [cycles per T].
+        Rate [1/T] and frequency [cycles/T] of the leading disturbance.
     hopf : tuple of (float, float)
-        Values at which a pair crosses the imaginary axis, and its frequency [cycles per T].
+        Values at which a pair crosses the imaginary axis, with its frequency [cycles/T].
     links : int or None
-        The number of links that all this is of; None for the method of the continuum.
+        Number of links of the discretisation; None for the continuum.
     """
 
     parameter: str
@@ -44,10 +45,22 @@ class StraightBranch:
 def follow_straight(model: Model, parameter: str, start: float, to: float) -> StraightBranch:
     """Follow the straight state along a parameter.
 
+    Parameters
+    ----------
+    model : Model
+    parameter : str
+        Name of a continuous parameter, such as "load.force".
+    start, to : float
+        First and last value of the parameter.
+
+    Returns
+    -------
+    StraightBranch
+
     Raises
     ------
     InputError
-        There is no such parameter, or a value is out of its range.
+        The model has no such parameter, or a value is out of its range.
     """
     value_of(model, parameter)
     model_along(model, "straight", parameter, (start, to))
@@ -56,13 +69,13 @@ def follow_straight(model: Model, parameter: str, start: float, to: float) -> St
     def leading(value: float) -> complex:
         return complex(spectrum(changed(model, parameter, value), count=1, method=method).values[0])
 
-    values = np.linspace(start, to, _POINTS)
-    found = np.array([leading(value) for value in values])
-    turns = np.flatnonzero(found.real[1:] * found.real[:-1] < 0.0)
+    values = np.linspace(start, to, _POINT_COUNT)
+    sigma = np.array([leading(value) for value in values])
+    sign_changes = np.flatnonzero(sigma.real[1:] * sigma.real[:-1] < 0.0)
     hopf = []
-    for k in turns:
-        at = float(brentq(lambda v: leading(v).real, values[k], values[k + 1], xtol=1e-13))
-        hopf.append((at, abs(leading(at).imag) / (2.0 * np.pi)))
-    frequencies = np.abs(found.imag) / (2.0 * np.pi)
+    for k in sign_changes:
+        root = float(brentq(lambda v: leading(v).real, values[k], values[k + 1], xtol=1e-13))
+        hopf.append((root, abs(leading(root).imag) / (2.0 * np.pi)))
+    frequencies = np.abs(sigma.imag) / (2.0 * np.pi)
     links = model.links if method == "discrete" else None
-    return StraightBranch(parameter, values, found.real, frequencies, tuple(hopf), links)
+    return StraightBranch(parameter, values, sigma.real, frequencies, tuple(hopf), links)
