@@ -31,7 +31,7 @@ import numpy as np
 
 import undula as un
 from undula.analysis.observables.fundamental import Frequency
-from undula.analysis.regimes.classify import Verdict
+from undula.analysis.regimes.verdict import Verdict
 from undula.analysis.runs.integrate import carry_on
 from undula.analysis.runs.run import Run
 from undula.analysis.runs.simulation import Simulation

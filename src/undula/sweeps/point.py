@@ -13,7 +13,7 @@ from importlib.metadata import version
 from typing import Any
 
 from undula.analysis.maps.stability_along_force import solved_record, stability_along_force
-from undula.analysis.regimes.classify import UNDECIDED
+from undula.analysis.regimes.verdict import UNDECIDED
 from undula.analysis.run_settings import Ending
 from undula.analysis.runs.dataset import dataset_of
 from undula.analysis.runs.integrate import carry_on

@@ -23,8 +23,9 @@ from motions import (
     wave,
     windmill,
 )
-from undula.analysis.regimes.classify import Verdict, first_verdict, with_exponents
+from undula.analysis.regimes.classify import first_verdict, with_exponents
 from undula.analysis.regimes.lyapunov import Lyapunov
+from undula.analysis.regimes.verdict import Verdict
 from undula.arrays import Array
 
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)

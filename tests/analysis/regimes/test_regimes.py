@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from undula.analysis.observables.linear_mode import linear_motion
-from undula.analysis.regimes.classify import Verdict, first_verdict
+from undula.analysis.regimes.classify import first_verdict
 from undula.analysis.regimes.stationary_window import late_windows
+from undula.analysis.regimes.verdict import Verdict
 from undula.arrays import Array
 
 ARC = np.linspace(0.0, 1.0, 21)

@@ -14,7 +14,8 @@ from motions import ARC, BENT, Clock, ellipse, line, turned, wave
 from refusal import complaint
 from undula.analysis.observables.alignment import aligned_distance, fixed_distance
 from undula.analysis.observables.precession import precession
-from undula.analysis.regimes.classify import Verdict, first_verdict
+from undula.analysis.regimes.classify import first_verdict
+from undula.analysis.regimes.verdict import Verdict
 from undula.analysis.solvers.branches import follow
 from undula.analysis.solvers.equilibrium import find_equilibrium
 from undula.analysis.states.not_found import NotFound

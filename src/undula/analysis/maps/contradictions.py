@@ -9,7 +9,7 @@ import xarray as xr
 from undula.analysis.maps.stability_boundaries import StabilityBoundaries
 from undula.analysis.maps.stability_intervals import StabilityIntervals
 from undula.analysis.parameters import FORCE
-from undula.analysis.regimes.classify import UNDECIDED
+from undula.analysis.regimes.verdict import UNDECIDED
 from undula.errors import InputError
 from undula.schema.sweep_axes import TRY, axes_of, verdicts_of
 

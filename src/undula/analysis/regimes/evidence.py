@@ -1,4 +1,4 @@
-"""What a window of a run shows, each number measured once, and only if a verdict asks for it."""
+"""Evidence in a window of a run, each number measured on first use."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from undula.analysis.observables.spectrum import spectral_peak
 from undula.analysis.regimes.stationary_window import drift
 from undula.arrays import Instants, Shapes
 
-# Below this RMS displacement [L] the motion is linear to about its square, one per cent.
-LINEAR = 0.1
-# Largest change of shape of a steady motion, relative: far above integration errors, far below any
-# modulation that would deserve another name.
-STEADY_SHAPE = 5e-3
-# A steady shape must be seen to come round once; in less it could grow or shrink unseen.
+# Largest RMS displacement of a linear motion [L]; the error is about its square, one per cent.
+MAX_LINEAR_DISPLACEMENT = 0.1
+# Largest change of shape of a steady motion, relative to the displacement: far above integration
+# errors, far below a modulation with a name of its own.
+MAX_STEADY_CHANGE = 5e-3
+# Least number of turns of a steady shape in the window; in fewer, slow growth is undetected.
 MIN_TURNS = 1.0
-# Growth by less than this factor over the window is not told from a slow change of amplitude.
-GROWTH_FACTOR = 1.2
-# The halves differ by more than this share of the change of shape when it drifts (about twice it
-# for a steady drift), and by a hundredth of it or less when it swings.
-TRANSIENT = 0.2
-# The rate in each half of the window agrees with the whole to this share in exponential growth.
-RATE_AGREEMENT = 0.3
-#: What the record of a run tells, where it was measured.
+# Least factor of growth over the window; a slow change of amplitude may grow by less.
+MIN_GROWTH_FACTOR = 1.2
+# Least difference of the halves of the window, as a share of the change of shape, of a drift (about
+# 2 for a steady drift, at most 0.01 for an oscillation).
+MIN_TRANSIENT_DRIFT = 0.2
+# Largest relative difference of the rates in the halves of the window in exponential growth.
+MAX_RATE_DIFFERENCE = 0.3
+#: Numbers in the record of a run, where they were measured.
 _NUMBERS = (
     *("displacement", "turns", "shape_change", "shape_drift", "energy_swing", "planarity"),
     *("drift", "periods", "samples_per_period", "misfit"),
@@ -46,7 +46,7 @@ _NUMBERS = (
 class Evidence:
     """A window of a run in which the filament is not straight throughout.
 
-    What is measured on it is relative to the RMS displacement or the mean.
+    The measured quantities are relative to the RMS displacement or to the mean.
 
     Attributes
     ----------
@@ -57,9 +57,9 @@ class Evidence:
     bending_energy
         Energy [B/L], shape ``(m,)``.
     rotation_angle
-        Integral of the rate of turning about z [rad], shape ``(m,)``.
+        Integral of the rate of rotation about z [rad], shape ``(m,)``.
     compare
-        How shapes are compared.
+        Distance between shapes, up to rotations or without them.
     """
 
     time: Instants
@@ -91,13 +91,13 @@ class Evidence:
 
     @cached_property
     def shape_change(self) -> float:
-        """Largest distance from the middle sample's shape after the best turn."""
+        """Largest distance from the shape of the middle sample after the best rotation."""
         middle = self.nodes[len(self.nodes) // 2]
         return largest_distance(self.nodes, middle, self.compare) / self.displacement
 
     @cached_property
     def shape_drift(self) -> float:
-        """Distance between the first and the last shape after the best turn."""
+        """Distance between the first and the last shape after the best rotation."""
         return float(self.compare(self.nodes[0], self.nodes[-1]).distance) / self.displacement
 
     @cached_property
@@ -108,7 +108,7 @@ class Evidence:
 
     @cached_property
     def planarity(self) -> float:
-        """Out-of-plane share, 0 to 0.71."""
+        """Out-of-plane share of the motion, from 0 to 0.71."""
         return planarity(self.nodes)
 
     @cached_property
@@ -118,21 +118,21 @@ class Evidence:
 
     @cached_property
     def frequency(self) -> Frequency | None:
-        """Frequency of the whole motion, if any, positive; of a turning shape that of its turns."""
+        """Positive frequency of the motion, for a spinning shape that of its rotation, or None."""
         if self.spins:
             return turning_frequency(self.time, self.rotation_angle)
         return whole_motion_frequency(self.time, self.nodes)
 
     @cached_property
     def periods(self) -> float:
-        """Periods of that frequency in the window; 0 when there is none."""
+        """Number of periods of that frequency in the window; 0 without a frequency."""
         return self.frequency.value * self.span if self.frequency else 0.0
 
     @cached_property
     def samples_per_period(self) -> float:
-        """Samples a period of the strongest line of the mean position's spectrum.
+        """Samples in a period of the strongest spectral line of the mean position.
 
-        That line need not be good for a frequency. As many as there are samples when nothing moves.
+        The line need not be clear enough for a frequency. Without motion, the number of samples.
         """
         line = abs(spectral_peak(self.time, transverse(mean_position(self.nodes))[:, None]))
         count = len(self.time)
@@ -141,41 +141,38 @@ class Evidence:
 
     @cached_property
     def misfit(self) -> float:
-        """Share of the whole shape's in-plane motion that is not periodic; 1 without frequency."""
-        found = self.frequency
-        return misfit(self.time, self.nodes, found.value) if found else 1.0
+        """Share of the in-plane motion of all nodes that is not periodic; 1 without frequency."""
+        frequency = self.frequency
+        return misfit(self.time, self.nodes, frequency.value) if frequency else 1.0
 
     @cached_property
     def growth(self) -> LinearMotion | None:
-        """The exponential growth from straight, if the window shows one."""
-        if float(np.max(self.away)) > LINEAR:
+        """Exponential growth from straight; None if the window does not show it."""
+        if float(np.max(self.away)) > MAX_LINEAR_DISPLACEMENT:
             return None
         motion = linear_motion(self.time, self.nodes)
-        if motion is None or motion.rate * self.span < np.log(GROWTH_FACTOR):
+        if motion is None or motion.rate * self.span < np.log(MIN_GROWTH_FACTOR):
             return None
-        return motion if motion.rate_error <= RATE_AGREEMENT * motion.rate else None
+        return motion if motion.rate_error <= MAX_RATE_DIFFERENCE * motion.rate else None
 
     @property
     def steady(self) -> bool:
-        """Whether the shape does not change."""
-        return self.shape_change <= STEADY_SHAPE
+        """True if the shape does not change."""
+        return self.shape_change <= MAX_STEADY_CHANGE
 
     @property
     def spins(self) -> bool:
-        """Whether the shape does not change but for turns, and is seen to make one."""
-        free = self.compare is aligned_distance
-        return free and self.steady and abs(self.turns) >= MIN_TURNS
+        """True if the shape changes by rotation alone, and by at least one turn."""
+        axisymmetric = self.compare is aligned_distance
+        return axisymmetric and self.steady and abs(self.turns) >= MIN_TURNS
 
     @property
     def transient(self) -> bool:
-        """Whether the change of shape is a drift, not a swing, and so may end by itself."""
-        return self.drift > TRANSIENT * self.shape_change
+        """True if the change of shape is a drift, which may end, not an oscillation."""
+        return self.drift > MIN_TRANSIENT_DRIFT * self.shape_change
 
     def numbers(self) -> dict[str, float]:
-        """Return what was measured and is a number, by name, for the record of the run.
-
-        The frequency is always asked for in the end.
-        """
+        """Return the numbers measured so far by name, with the frequency, for the record."""
         always = {"turns": self.turns, "periods": self.periods}
         record = {"samples": float(len(self.time)), **always}
         record |= {name: self.__dict__[name] for name in _NUMBERS if name in self.__dict__}

@@ -1,4 +1,4 @@
-"""The late window of a run, as what names its motion looks at it."""
+"""Lazily measured quantities of the late window of a run, used for classification."""
 
 from __future__ import annotations
 
@@ -21,24 +21,34 @@ from undula.analysis.regimes.evidence import Evidence
 from undula.analysis.regimes.recurrence import Recurrence, recurrence
 from undula.arrays import Array, Indices, Instants, Shapes
 
-# Share out of the plane below which a motion is planar: a trace of the start that still decays.
+# Largest out-of-plane share of a planar motion, which allows for a decaying rest of the start.
 PLANAR_TOLERANCE = 0.02
-# Sense of rotation from which a motion goes round rather than to and fro.
-GOES_ROUND = 0.5
-# Fewer maxima than this do not show that a motion is irregular: with up to ten a period it would
-# have come back four times.
-MANY_MAXIMA = 40
-# A windmilling link points backwards at times: its direction has this z component or less.
-BACKWARDS = -0.7
-# A criterion met by less than this factor does not decide between two names.
-THIN = 1.05
+# Least sense of rotation of a rotation; below it the motion is an oscillation.
+MIN_SENSE_OF_ROTATION = 0.5
+# Least number of maxima of the displacement from which a motion without recurrence is irregular:
+# with up to ten maxima a period, it would have recurred four times.
+MIN_IRREGULAR_MAXIMA = 40
+# Largest z component of the direction of a link that points backwards, as a windmilling link does
+# at times.
+MAX_BACKWARD_HEIGHT = -0.7
+# Least factor by which the criteria of a name are met.
+MIN_MARGIN = 1.05
 
 
 @dataclass(frozen=True)
 class Name:
-    """A name with one sentence and the factor by which its criteria are met, at least 1.
+    """A name for a motion.
 
-    `still_changing` tells what still changes, if the motion only looks settled.
+    Attributes
+    ----------
+    name
+        One of the names of `undula.analysis.regimes.names`.
+    reason
+        The evidence in one sentence.
+    margin
+        Factor by which the criteria are met, at least 1.
+    still_changing
+        A change that continues, in words; empty for a motion that has settled.
     """
 
     name: str
@@ -49,7 +59,7 @@ class Name:
 
 @dataclass(frozen=True)
 class LateWindow:
-    """The late window of a run, with what is measured only where it is asked for.
+    """The late window of a run, with quantities that are measured on first use.
 
     Attributes
     ----------
@@ -58,9 +68,10 @@ class LateWindow:
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
     seen
-        What windows are measured for before anything comes back.
+        Measurements that need no recurrence.
     axisymmetric
-        Whether motions that differ by a turn are the same, as no direction across z is singled out.
+        True if the body has rotational symmetry about z, so that motions are compared up to
+        rotations.
     """
 
     time: Instants
@@ -69,8 +80,8 @@ class LateWindow:
     axisymmetric: bool = True
 
     @cached_property
-    def back(self) -> Recurrence | None:
-        """How the shape comes back."""
+    def recurrence(self) -> Recurrence | None:
+        """Recurrence of the shape; None with fewer than four maxima of the displacement."""
         return recurrence(self.time, self.nodes, self.axisymmetric)
 
     @cached_property
@@ -80,51 +91,56 @@ class LateWindow:
 
     @cached_property
     def backwards(self) -> Indices:
-        """Indices of the links that point backwards at times."""
-        return np.flatnonzero(lowest_direction(self.nodes) <= BACKWARDS)
+        """Indices of the links that point backwards at some sample."""
+        return np.flatnonzero(lowest_direction(self.nodes) <= MAX_BACKWARD_HEIGHT)
 
     @cached_property
-    def winding(self) -> LinkRotation:
-        """Turning of these links about axes across z."""
+    def link_rotation(self) -> LinkRotation:
+        """Rotation of these links about transverse axes."""
         return link_rotation(self.nodes, self.backwards)
 
     @property
     def plane_turn(self) -> float:
-        """Angle by which the plane of the beat turns until the shape comes back [rad]."""
-        # A half-turn is the mirror image of a beat in a plane, not a turning of the plane.
-        return (self.back.turn + 0.5 * np.pi) % np.pi - 0.5 * np.pi if self.back else 0.0
+        """Rotation of the plane of the beat in one period of the shape [rad], in [-pi/2, pi/2)."""
+        # A rotation by pi is the mirror image of a planar beat, not a rotation of its plane.
+        recurrence = self.recurrence
+        return (recurrence.turn + 0.5 * np.pi) % np.pi - 0.5 * np.pi if recurrence else 0.0
 
     @cached_property
     def beat_planarity(self) -> float:
-        """Share out of the plane of the beat when the slow turning of that plane is taken back."""
-        back = self.back
-        if back is None:
+        """Out-of-plane share of the motion in a frame that rotates with the plane of the beat."""
+        recurrence = self.recurrence
+        if recurrence is None:
             return self.seen.planarity
-        turned = -self.plane_turn / back.period * (self.time - self.time[0])
+        turned = -self.plane_turn / recurrence.period * (self.time - self.time[0])
         return planarity(_turned(self.nodes, turned))
 
     @cached_property
     def bias(self) -> float:
-        """How far the mean of the motion is from the axis, relative to the displacement."""
+        """Distance of the mean shape from the axis, relative to the RMS displacement."""
         sides, weights = transverse(self.nodes), arc_weights(self.nodes.shape[1])
         mean = hann(len(sides)) @ sides
-        size = np.sqrt(np.mean(displacement(self.nodes) ** 2))
-        return float(np.sqrt(np.sum(weights * np.abs(mean) ** 2)) / size)
+        rms_displacement = np.sqrt(np.mean(displacement(self.nodes) ** 2))
+        return float(np.sqrt(np.sum(weights * np.abs(mean) ** 2)) / rms_displacement)
 
     @cached_property
     def plane_turns(self) -> tuple[float, float]:
-        """Turns about z of the plane of the beat in each half of the window, with sign."""
-        angle = plane_angle(self.nodes, self.back.maxima if self.back else 1) / (2.0 * np.pi)
+        """Signed turns about z of the plane of the beat in each half of the window."""
+        maxima = self.recurrence.maxima if self.recurrence else 1
+        angle = plane_angle(self.nodes, maxima) / (2.0 * np.pi)
         middle = len(angle) // 2
         return float(angle[middle] - angle[0]), float(angle[-1] - angle[middle])
 
     @property
     def irregular(self) -> bool:
-        """Whether so many maxima are seen that the shape ought to have come back, and has not."""
-        return self.back is not None and self.back.maxima >= MANY_MAXIMA and not self.back.repeats
+        """True if the shape does not recur although the window has enough maxima for it."""
+        recurrence = self.recurrence
+        if recurrence is None:
+            return False
+        return recurrence.maxima >= MIN_IRREGULAR_MAXIMA and not recurrence.repeats
 
     def numbers(self) -> dict[str, float]:
-        """All that is a number, by name, for the record of the run."""
+        """Return the numbers measured so far by name, for the record of the run."""
         record = self.seen.numbers()
         if "sense" in self.__dict__:
             record["sense_of_rotation"] = self.sense
@@ -132,26 +148,37 @@ class LateWindow:
             record["bias"] = self.bias
         if "plane_turns" in self.__dict__:
             record["plane_turns"] = sum(self.plane_turns)
-        if "winding" in self.__dict__:
-            record["winding_coherence"] = float(self.winding.coherence.max())
-        if self.__dict__.get("back") is not None and self.back is not None:
+        if "link_rotation" in self.__dict__:
+            record["winding_coherence"] = float(self.link_rotation.coherence.max())
+        if self.__dict__.get("recurrence") is not None and self.recurrence is not None:
             record |= {
-                "maxima": float(self.back.maxima),
-                "maxima_a_period": float(self.back.every),
-                "recurrence_distance": self.back.distance,
-                "shape_period": self.back.period,
-                "turn_a_period": self.back.turn,
+                "maxima": float(self.recurrence.maxima),
+                "maxima_a_period": float(self.recurrence.every),
+                "recurrence_distance": self.recurrence.distance,
+                "shape_period": self.recurrence.period,
+                "turn_a_period": self.recurrence.turn,
             }
         return record
 
 
 def below(*criteria: tuple[float, float]) -> float:
-    """Return the least factor by which values stay below their limits, at most a hundred."""
+    """Return the least factor by which values stay below their limits.
+
+    Parameters
+    ----------
+    *criteria
+        Pairs of a value, at least 0, and its limit, positive.
+
+    Returns
+    -------
+    float
+        The least quotient of limit and value, at most 100.
+    """
     return min(limit / max(value, 1e-2 * limit) for value, limit in criteria)
 
 
 def _turned(nodes: Shapes, angle: Array) -> Shapes:
-    """Return nodes (m, N + 1, 3) turned about z by angles (m,) [rad]."""
+    """Return nodes (m, N + 1, 3) rotated about z by angles (m,) [rad]."""
     cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
     x, y, z = nodes[..., 0], nodes[..., 1], nodes[..., 2]
     return np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=-1)

@@ -1,8 +1,7 @@
-"""Lyapunov exponents of a model's motion: how fast neighbouring motions part.
+"""Lyapunov exponents of a motion: rates of divergence of neighbouring motions.
 
-Two of them are known: a shift in time and a turn about the axis neither grow nor decay. They are 0
-up to the errors of the method; what is left when they are taken out tells whether a motion is
-chaotic.
+Shifts in time and rotations about the axis neither grow nor decay: their exponents are 0 up to the
+errors of the method. The largest of the other exponents is positive in chaos.
 """
 
 from collections.abc import Callable
@@ -21,13 +20,13 @@ from undula.numerics.integration.status import Status
 from undula.numerics.integration.stepper_state import TIME, StepperState, start
 from undula.numerics.integration.system import RATES
 
-# Velocity and turning are one direction if the sine of their angle stays below this: they agree to
-# the errors of the integration in spinning, and differ by far more in any other motion.
-_PARALLEL = 1e-3
-# A speed below this is round-off [L/T].
-_AT_REST = 1e-9
-# A first step that moves no position by more than this part of the length.
-_FIRST_MOVE = 1e-6
+# Largest sine of the angle between velocity and rotation at which they are one direction: in
+# spinning they agree to the errors of the integration, in other motions they differ by far more.
+_MAX_PARALLEL_SINE = 1e-3
+# Least speed of a motion above round-off [L/T].
+_MIN_SPEED = 1e-9
+# Largest displacement of a position in the first step [L].
+_FIRST_DISPLACEMENT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -40,9 +39,9 @@ class Lyapunov:
         The leading exponents [1/T], not rising, and their errors: see
         `undula.numerics.integration.lyapunov`.
     symmetries : int
-        How many of them belong to shifts in time and turns about the axis and are 0.
+        Number of exponents of shifts in time and rotations about the axis, which are 0.
     duration : float
-        Time over which they were taken [T].
+        Time over which they were averaged [T].
     """
 
     exponents: Array
@@ -57,27 +56,27 @@ class Lyapunov:
 
     @property
     def error(self) -> float:
-        """Its error [1/T]."""
+        """Error of the largest exponent [1/T]."""
         return float(self.errors[0])
 
     @property
     def _others(self) -> Array:
-        """Indices of the exponents that are left without the ones nearest to 0."""
-        known = np.argsort(np.abs(self.exponents))[: self.symmetries]
-        return np.setdiff1d(np.arange(self.exponents.size), known)
+        """Indices of the exponents without those nearest to 0, which are the symmetries'."""
+        symmetric = np.argsort(np.abs(self.exponents))[: self.symmetries]
+        return np.setdiff1d(np.arange(self.exponents.size), symmetric)
 
     @property
     def beyond_symmetry(self) -> float:
-        """The largest exponent when those of the symmetries are taken out [1/T]."""
+        """The largest exponent without those of the symmetries [1/T]."""
         return float(self.exponents[self._others[0]])
 
     @property
     def beyond_symmetry_error(self) -> float:
-        """Its error [1/T]."""
+        """Error of that exponent [1/T]."""
         return float(self.errors[self._others[0]])
 
     def as_dict(self) -> dict[str, Any]:
-        """Return all of it in plain JSON types."""
+        """Return all fields in plain JSON types."""
         return {
             "value": self.value,
             "error": self.error,
@@ -92,7 +91,13 @@ class Lyapunov:
 
 @dataclass(frozen=True)
 class NotFollowed:
-    """No exponents, because the motion could not be followed; `reason` says why and what to do."""
+    """Failure of an integration along a motion.
+
+    Attributes
+    ----------
+    reason : str
+        Cause and remedy in one sentence.
+    """
 
     reason: str
 
@@ -107,47 +112,63 @@ def lyapunov(
     seed: int = 1,
     progress: Callable[[int, int], None] | None = None,
 ) -> Lyapunov | NotFollowed:
-    """Return the leading Lyapunov exponents of the motion that goes on from a state.
+    """Return the leading Lyapunov exponents of the motion from a state.
 
     Parameters
     ----------
     model : Model
     state : ndarray, shape (model.size,) or (n,)
-        A state on the attractor, such as the last one of a run, or the integrator's vector there,
-        which knows how far joints have wound up.
+        A state on the attractor, such as the last one of a run, or the unknowns of the integrator
+        there, which include the turns of wound-up joints.
     duration : float
-        Time to follow the motion [T], some hundred beats or more; the first quarter is not counted.
+        Time to follow the motion [T], about a hundred beats or more. The first quarter, in which
+        the perturbations align, is not counted.
     rtol, atol : float
-        Tolerances of the integration.
+        Relative and absolute [rad] error tolerance of a step, as in `integrate`.
     seed : int
-        Seed of the first small changes.
+        Seed of the random first perturbations.
     progress : callable, optional
-        Called with the number of blocks done and of all.
+        Called with the number of blocks done and the number of all blocks.
 
     Returns
     -------
     Lyapunov or NotFollowed
+        NotFollowed if the integration fails.
 
     Raises
     ------
     InputError
-        The duration is not positive, or the state does not move.
+        The duration is not positive, or the state is at rest.
+
+    Examples
+    --------
+    A spinning chain returns to its shape: without the exponent of its rotation, which is a shift in
+    time as well, the largest is negative.
+
+    >>> import undula as un
+    >>> model = un.Filament(6, load=un.TipLoad(80.0))
+    >>> run = un.integrate(model, un.helix(model), until=0.3)
+    >>> exponents = un.lyapunov(model, model.from_nodes(run.last_shape), 0.2)
+    >>> bool(exponents.beyond_symmetry < 0.0)
+    True
     """
     if not (is_number(duration) and duration > 0.0):
         raise InputError(f"duration = {duration!r} has to be a positive finite number")
-    memory = _begin(model, state, duration)
+    integrator = _begin(model, state, duration)
     options = Schedule(until=duration, rtol=rtol, atol=atol).options(model)
     blocks, symmetries = [], 0
-    # One more than there are symmetries.
-    changes = model.dimension
-    for block in growth(model.system, memory, options, count=changes, duration=duration, seed=seed):
+    # One more than the symmetries of the model.
+    count = model.dimension
+    for block in growth(
+        model.system, integrator, options, count=count, duration=duration, seed=seed
+    ):
         if block.status is not Status.DONE:
-            reached = float(memory.real[TIME])
+            reached = float(integrator.real[TIME])
             return NotFollowed(
                 f"the motion could not be followed beyond t = {reached:.6g}: {block.status.advice}"
             )
         blocks.append(block)
-        symmetries = max(symmetries, _directions(model, memory))
+        symmetries = max(symmetries, _directions(model, integrator))
         if progress:
             progress(len(blocks), BLOCKS)
     values, errors = mean_rates(blocks, rtol)
@@ -155,23 +176,23 @@ def lyapunov(
 
 
 def _begin(model: Model, state: Array, duration: float) -> StepperState:
-    known = state.shape == model.position_mask.shape
-    x = model.positions(state) if known else model.admissible(state)
+    in_integrator_form = state.shape == model.position_mask.shape
+    x = model.positions(state) if in_integrator_form else model.admissible(state)
     rates = model.rates(x)
     speed = float(np.abs(model.positions(rates[:-RATES])).max())
-    if speed < _AT_REST:
+    if speed < _MIN_SPEED:
         raise InputError("a state at rest has no motion to take Lyapunov exponents of")
-    unknowns = state if known else model.unknowns(x)
-    step = min(duration / BLOCKS, _FIRST_MOVE / speed)
+    unknowns = state if in_integrator_form else model.unknowns(x)
+    step = min(duration / BLOCKS, _FIRST_DISPLACEMENT / speed)
     return start(model.system, NDF, unknowns, rates, 0.0, step)
 
 
 def _directions(model: Model, memory: StepperState) -> int:
-    """Return how many directions the velocity and the turning span."""
+    """Return the dimension of the span of velocity and rotation."""
     x = model.positions(memory.differences[0, :-RATES])
     velocity, turning = model.rhs(x), model.rotation_generator(x)
-    sizes = np.linalg.norm(velocity), np.linalg.norm(turning)
-    if min(sizes) == 0.0:
-        return int(max(sizes) > 0.0)
-    cosine = float(velocity @ turning / (sizes[0] * sizes[1]))
-    return 2 if np.sqrt(max(0.0, 1.0 - cosine**2)) > _PARALLEL else 1
+    norms = np.linalg.norm(velocity), np.linalg.norm(turning)
+    if min(norms) == 0.0:
+        return int(max(norms) > 0.0)
+    cosine = float(velocity @ turning / (norms[0] * norms[1]))
+    return 2 if np.sqrt(max(0.0, 1.0 - cosine**2)) > _MAX_PARALLEL_SINE else 1

@@ -1,9 +1,9 @@
-"""Does the shape come back? Shapes where it is farthest from straight, compared up to turns.
+"""Recurrence of the shape at maxima of the displacement, up to rotations.
 
-In the frame of the motion's own symmetry a state at a maximum of the displacement is a point of a
-Poincare section: a motion that is periodic up to a turn visits the same few points again and again,
-one on a torus a curve of them, a chaotic one a cloud. The displacement shows them better than the
-energy, which is made of second differences and so of noise first.
+With the rotational symmetry reduced, the states at maxima of the displacement are a Poincare
+section: a motion that is periodic up to a rotation visits the same few points, a quasi-periodic one
+a curve, a chaotic one a cloud. The displacement has less noise than the energy, which contains
+second differences.
 """
 
 from __future__ import annotations
@@ -18,49 +18,50 @@ from undula.analysis.observables.peaks import PROMINENCE, prominent_maxima
 from undula.analysis.observables.shapes import displacement
 from undula.arrays import Array, Instants, Shapes
 
-#: Most maxima of the displacement that one period may have.
-MOST_MAXIMA = 12
-#: Shares of the whole swing by which a maximum rises above the minima next to it. If nothing comes
-#: back with the first, a ripple may be counted at times only: then the second is tried.
+#: Largest number of maxima of the displacement in one period.
+MAX_MAXIMA_PER_PERIOD = 12
+#: Rise of a maximum above the minima next to it, as a share of the range of the displacement. The
+#: second is tried without a recurrence with the first, which may count a ripple only at times.
 PROMINENCES = (PROMINENCE, 0.2)
-#: A shape that comes back to within this share of the displacement, does: several times what the
-#: interpolation between some 24 samples a beat leaves, and a tenth of what chaotic motions show.
-RECURRENT = 5e-3
-#: A motion has to come back so often to be called periodic.
-FEWEST_REPETITIONS = 3
-#: Distances that grow or shrink by less than this factor over the window keep their size.
-STEADY_FACTOR = 2.0
-#: Distances below this part of what counts are made of errors of integration and interpolation.
-ERRORS = 0.2
-#: Samples beside a maximum that the parabola is laid through, as a part of those between maxima.
-_BESIDE = 1.0 / 16.0
-#: Shift in time by which shapes are compared as well, so that an error in the time of a maximum
-#: does not count, in samples: so little that the shape moves along a straight line.
-_NUDGE = 0.1
+#: Largest distance of a recurring shape, relative to the displacement: several times the error of
+#: the interpolation between 24 samples a beat, and a tenth of the distances in chaotic motions.
+MAX_RECURRENCE_DISTANCE = 5e-3
+#: Least number of recurrences of a periodic motion.
+MIN_REPETITIONS = 3
+#: Factor over the window up to which recurrence distances count as constant.
+MAX_STEADY_FACTOR = 2.0
+#: Share of the largest recurrence distance below which distances are errors of integration and
+#: interpolation.
+ERROR_SHARE = 0.2
+#: Samples on either side of a maximum in the fit of a parabola, as a share of those between maxima.
+_NEIGHBOUR_SHARE = 1.0 / 16.0
+#: Shift in time of the shapes with which the distance is minimised over the time of a maximum
+#: [samples]: so small that the shape moves along a straight line.
+_TIME_SHIFT = 0.1
 
 
 @dataclass(frozen=True)
 class Recurrence:
-    """How nearly a motion repeats itself.
+    """Recurrence of a shape in a window.
 
     Attributes
     ----------
     maxima
-        Maxima of the displacement in the window.
+        Number of maxima of the displacement in the window.
     every
-        Number of maxima after which the shape comes back: the least with which it does, else the
-        one with which it comes nearest.
+        Number of maxima in a period: the least with a recurrence, else the one with the least
+        distance.
     distance
-        Median distance between a shape and the one that comes back, after the best turn and the
-        best small shift in time, relative to the displacement.
+        Median distance between a shape and its recurrence, after the best rotation and the best
+        small shift in time, relative to the displacement.
     worst
-        The largest of these distances.
+        Largest of these distances.
     growth
         Factor by which the distances grow over the window, from its first third to its last.
     period
-        Time after which the shape comes back [T].
+        Time between a shape and its recurrence [T].
     turn
-        Angle by which it has turned then [rad], in (-pi, pi].
+        Rotation of the shape in a period [rad], in (-pi, pi].
     """
 
     maxima: int
@@ -73,13 +74,17 @@ class Recurrence:
 
     @property
     def repeats(self) -> bool:
-        """Whether the shape comes back, over the whole window and often enough."""
-        enough = self.maxima >= (FEWEST_REPETITIONS + 1) * self.every
-        return enough and self.distance <= RECURRENT and self.worst <= STEADY_FACTOR * RECURRENT
+        """True if the shape recurs over the whole window and often enough."""
+        enough = self.maxima >= (MIN_REPETITIONS + 1) * self.every
+        return (
+            enough
+            and self.distance <= MAX_RECURRENCE_DISTANCE
+            and self.worst <= MAX_STEADY_FACTOR * MAX_RECURRENCE_DISTANCE
+        )
 
 
 def recurrence(time: Instants, nodes: Shapes, axisymmetric: bool = True) -> Recurrence | None:
-    """Measure how the shape comes back; None with fewer than four maxima of the displacement.
+    """Measure the recurrence of the shape.
 
     Parameters
     ----------
@@ -88,59 +93,65 @@ def recurrence(time: Instants, nodes: Shapes, axisymmetric: bool = True) -> Recu
     nodes
         Node positions [L], shape ``(m, N + 1, 3)``.
     axisymmetric
-        Whether turns about z do not count.
+        True if shapes are compared up to rotations about z.
+
+    Returns
+    -------
+    Recurrence or None
+        None with fewer than four maxima of the displacement.
     """
     away, compare = displacement(nodes), comparison(axisymmetric=axisymmetric)
-    size = float(np.sqrt(np.mean(away**2)))
+    rms = float(np.sqrt(np.mean(away**2)))
     nearest = None
     for prominence in PROMINENCES:
-        at, shapes = _farthest(time, nodes, away, prominence * float(np.ptp(away)))
-        most = min(MOST_MAXIMA, len(at) // (FEWEST_REPETITIONS + 1))
-        found = []
+        times, shapes = _shapes_at_maxima(time, nodes, away, prominence * float(np.ptp(away)))
+        most = min(MAX_MAXIMA_PER_PERIOD, len(times) // (MIN_REPETITIONS + 1))
+        candidates = []
         for every in range(1, most + 1):
-            found.append(_after(every, at, shapes, size, compare))
-            if found[-1].repeats:
-                return found[-1]
-        nearest = nearest or min(found, key=lambda one: one.distance, default=None)
+            candidates.append(_recurrence_after(every, times, shapes, rms, compare))
+            if candidates[-1].repeats:
+                return candidates[-1]
+        nearest = nearest or min(candidates, key=lambda item: item.distance, default=None)
     return nearest
 
 
-def _farthest(
+def _shapes_at_maxima(
     time: Instants, nodes: Shapes, away: Array, height: float
 ) -> tuple[Instants, Sequence[Shapes]]:
-    """Return times (k,) of the prominent maxima, between samples, and shapes (k, N + 1, 3).
+    """Return times (k,) of prominent maxima between samples, and three sets of shapes.
 
-    These are at the times and a little before and after. The time is that of the parabola nearest
-    to the samples beside, the shape that of the cubic through four.
+    The shapes (k, N + 1, 3) are those at these times, shortly before and shortly after. The time is
+    that of the vertex of a parabola fitted to the neighbouring samples; the shapes are cubic
+    interpolants.
     """
     top = prominent_maxima(away, height)
-    if len(top) < FEWEST_REPETITIONS + 1:
+    if len(top) < MIN_REPETITIONS + 1:
         return time[:0], (nodes[:0],) * 3
-    beside = max(1, int(_BESIDE * np.min(np.diff(top))))
-    margin = max(3, beside)
+    neighbours = max(1, int(_NEIGHBOUR_SHARE * np.min(np.diff(top))))
+    margin = max(3, neighbours)
     top = top[(top >= margin) & (top < len(time) - margin)]
-    place = top + _vertex(away, top, beside)
+    position = top + _vertex(away, top, neighbours)
     interval = (time[-1] - time[0]) / (len(time) - 1)
-    near = [_between(nodes, place + shift) for shift in (0.0, -_NUDGE, _NUDGE)]
-    return np.asarray(time[0] + place * interval), near
+    shapes = [_between(nodes, position + shift) for shift in (0.0, -_TIME_SHIFT, _TIME_SHIFT)]
+    return np.asarray(time[0] + position * interval), shapes
 
 
-def _vertex(values: Array, top: Array, beside: int) -> Array:
-    """Return how far from each sample the parabola through it and its neighbours culminates."""
-    around = np.arange(-beside, beside + 1)
-    square = around**2 - np.mean(around**2)
-    near = values[top[:, None] + around]
-    slope = near @ around / np.sum(around**2)
-    bend = near @ square / np.sum(square**2)
-    vertex = np.divide(-0.5 * slope, bend, out=np.zeros(len(top)), where=bend < 0.0)
+def _vertex(values: Array, top: Array, neighbours: int) -> Array:
+    """Return the offset of the vertex of the parabola fitted about each sample [samples]."""
+    offsets = np.arange(-neighbours, neighbours + 1)
+    square = offsets**2 - np.mean(offsets**2)
+    values_near = values[top[:, None] + offsets]
+    slope = values_near @ offsets / np.sum(offsets**2)
+    curvature = values_near @ square / np.sum(square**2)
+    vertex = np.divide(-0.5 * slope, curvature, out=np.zeros(len(top)), where=curvature < 0.0)
     return np.asarray(np.clip(vertex, -1.0, 1.0))
 
 
-def _between(nodes: Shapes, place: Array) -> Shapes:
-    """Return shapes (k, N + 1, 3) at places between samples, by cubics through four of them."""
-    first = np.floor(place).astype(int) - 1
-    x = place - first
-    shapes = np.zeros((len(place), *nodes.shape[1:]))
+def _between(nodes: Shapes, position: Array) -> Shapes:
+    """Return shapes (k, N + 1, 3) at positions between samples, by cubics through four of them."""
+    first = np.floor(position).astype(int) - 1
+    x = position - first
+    shapes = np.zeros((len(position), *nodes.shape[1:]))
     for j in range(4):
         weight = np.ones_like(x)
         for other in range(4):
@@ -150,27 +161,29 @@ def _between(nodes: Shapes, place: Array) -> Shapes:
     return shapes
 
 
-def _after(
-    every: int, at: Instants, shapes: Sequence[Shapes], size: float, compare: Compare
+def _recurrence_after(
+    every: int, times: Instants, shapes: Sequence[Shapes], rms: float, compare: Compare
 ) -> Recurrence:
-    """Compare each shape with the one so many maxima later."""
-    there, before, after = (compare(near[every:], shapes[0][:-every]) for near in shapes)
-    slope, bend = _parabola(before.distance**2, there.distance**2, after.distance**2)
-    gained = np.divide(slope**2, 2.0 * bend, out=np.zeros_like(bend), where=bend > 0.0)
-    distances = np.sqrt(np.maximum(there.distance**2 - gained, 0.0)) / size
+    """Compare each shape with the one a number of maxima later."""
+    pairs, before, after = (compare(near[every:], shapes[0][:-every]) for near in shapes)
+    slope, curvature = _parabola(before.distance**2, pairs.distance**2, after.distance**2)
+    reduction = np.divide(
+        slope**2, 2.0 * curvature, out=np.zeros_like(curvature), where=curvature > 0.0
+    )
+    distances = np.sqrt(np.maximum(pairs.distance**2 - reduction, 0.0)) / rms
     third = max(1, len(distances) // 3)
     first, last = (
-        max(ERRORS * RECURRENT, float(np.median(part)))
+        max(ERROR_SHARE * MAX_RECURRENCE_DISTANCE, float(np.median(part)))
         for part in (distances[:third], distances[-third:])
     )
     return Recurrence(
-        maxima=len(at),
+        maxima=len(times),
         every=every,
         distance=float(np.median(distances)),
         worst=float(np.max(distances)),
         growth=last / first,
-        period=float(np.median(at[every:] - at[:-every])),
-        turn=float(np.angle(np.mean(np.exp(1j * there.angle)))),
+        period=float(np.median(times[every:] - times[:-every])),
+        turn=float(np.angle(np.mean(np.exp(1j * pairs.angle)))),
     )
 
 

@@ -1,4 +1,4 @@
-"""The last part of a run in which the motion no longer changes its character."""
+"""Late windows of a run in which the motion is stationary."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from undula.analysis.observables.shapes import displacement, mean_position, tip_
 from undula.analysis.observables.spectrum import hann, spectral_peak
 from undula.arrays import Array, Instants, Shapes
 
-# Shares of the run tried as the window, longest first: beyond a half the start is always in view,
-# and an eighth of a run is the least worth a verdict about the whole.
-SHARES = (1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8)
-# The window when none is stationary.
+# Lengths of the windows that are tried, as shares of the run, longest first: more than a half
+# always contains the start, and less than an eighth does not represent the run.
+WINDOW_SHARES = (1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8)
+# Length of the window of a run without a stationary one, as a share of the run.
 FALLBACK_SHARE = 1 / 3
-# Four periods give two in each half: enough for the weighted means of the halves to settle.
+# Least number of periods in a window: two in each half, for weighted means that have converged.
 MIN_PERIODS = 4.0
-# Fewer samples than this in the window say nothing about its two halves.
+# Least number of samples in a window, for a comparison of its halves.
 MIN_SAMPLES = 16
-# Halves whose means differ by less than this share are the same: ten times the leakage of the
-# weight at two periods, and less than any change of regime.
-STATIONARY = 0.02
+# Largest relative difference of the means of the halves of a stationary window: ten times the
+# leakage of the weight at two periods, and less than any change of regime.
+MAX_STATIONARY_DRIFT = 0.02
 
 
 def drift(away: Instants, nodes: Shapes, bending_energy: Instants) -> float:
-    """How much the two halves of a window differ, relative to the whole.
+    """Return the relative difference between the two halves of a window.
 
-    Compares Hann-weighted means of the squared displacement, the drop of the tip below its straight
-    height, and the bending energy; the weight makes a cut through a period harmless.
+    It compares Hann-weighted means of the squared displacement, of the drop of the tip below its
+    straight height, and of the bending energy. The weight removes the effect of a cut period.
 
     Parameters
     ----------
@@ -40,14 +40,14 @@ def drift(away: Instants, nodes: Shapes, bending_energy: Instants) -> float:
     Returns
     -------
     float
-        The largest of the three relative differences; 0 when nothing moves.
+        Largest of the three relative differences, at least 0; 0 without motion.
     """
     signals = (away**2, 1.0 - tip_height(nodes), bending_energy)
     return max(_half_difference(signal) for signal in signals)
 
 
 def late_windows(time: Instants, nodes: Shapes, bending_energy: Instants) -> Iterator[int]:
-    """First samples of the late windows that are stationary and hold four periods, longest first.
+    """Yield the first samples of the stationary late windows with four periods, longest first.
 
     Parameters
     ----------
@@ -61,18 +61,18 @@ def late_windows(time: Instants, nodes: Shapes, bending_energy: Instants) -> Ite
     Yields
     ------
     int
-        Index of the sample; after these, that of the last third of the run (or of the last 16
-        samples, if that is longer), whatever it is like.
+        Index of the sample; last, that of the last third of the run (or of the last 16 samples, if
+        that is longer), stationary or not.
     """
     count, away = len(time), displacement(nodes)
-    for share in SHARES:
+    for share in WINDOW_SHARES:
         start = count - round(share * count)
         if count - start < MIN_SAMPLES:
             break
-        late = slice(start, None)
-        if drift(away[late], nodes[late], bending_energy[late]) > STATIONARY:
+        part = slice(start, None)
+        if drift(away[part], nodes[part], bending_energy[part]) > MAX_STATIONARY_DRIFT:
             continue
-        if _periods(time[late], nodes[late]) >= MIN_PERIODS:
+        if _periods(time[part], nodes[part]) >= MIN_PERIODS:
             yield start
     yield max(0, count - max(MIN_SAMPLES, round(FALLBACK_SHARE * count)))
 
@@ -82,11 +82,11 @@ def _half_difference(values: Array) -> float:
     weights = hann(half)
     first, last = float(weights @ values[:half]), float(weights @ values[-half:])
     scale = 0.5 * (abs(first) + abs(last))
-    # The drop of the tip is a difference from 1, so below this it is made of rounding.
+    # The drop of the tip is a difference from 1, and round-off below this.
     return abs(last - first) / scale if scale > 1e-12 else 0.0
 
 
 def _periods(time: Instants, nodes: Shapes) -> float:
-    """Return how often the strongest line of the mean position's spectrum repeats."""
+    """Return the number of periods of the strongest spectral line of the mean position."""
     line = spectral_peak(time, transverse(mean_position(nodes))[:, None])
     return abs(line) * float(time[-1] - time[0])

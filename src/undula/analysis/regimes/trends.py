@@ -1,7 +1,7 @@
-"""Whether a motion that looks settled still changes: its two halves compared.
+"""Slow changes of a motion, from a comparison of the two halves of a window.
 
-What is small and grows may be the beginning of another motion; a modulation that shrinks may be the
-end of one. Either is told from the halves of a window long before the whole of it changes.
+A small part that grows may be the onset of another motion, a modulation that shrinks the end of
+one. The halves of a window show either long before the window as a whole does.
 """
 
 from __future__ import annotations
@@ -18,20 +18,34 @@ from undula.analysis.observables.shapes import displacement
 from undula.analysis.observables.spectrum import hann
 from undula.arrays import Array, Shapes
 
-# Parts of a window that are compared one by one, and the least fall from the first to the last that
-# counts: beats cut at any place change the share of a motion that has settled by a hundredth.
-_PARTS, _SLOWEST = 4, 0.05
+# Number of parts of a window that are compared, and least relative fall from the first to the last:
+# cut beats change the share of a settled motion by a hundredth.
+_PART_COUNT, _MIN_FALL = 4, 0.05
 
 
 @dataclass(frozen=True)
 class Halves:
-    """A measure of each half of a window."""
+    """A measure of the two halves of a window.
+
+    Attributes
+    ----------
+    first, last : float
+        In the unit of the measure.
+    """
 
     first: float
     last: float
 
     def grows(self, factor: float, floor: float) -> bool:
-        """Whether it grows by more than a factor to more than a floor."""
+        """Return True if the measure grows by more than a factor to more than a floor.
+
+        Parameters
+        ----------
+        factor : float
+            Least quotient of last and first, at least 1.
+        floor : float
+            Least value in the last half, in the unit of the measure.
+        """
         return self.last > floor and self.last > factor * self.first
 
     @property
@@ -42,30 +56,52 @@ class Halves:
 
 
 def shape_change(nodes: Shapes) -> Halves:
-    """How much the shape of nodes (m, N + 1, 3) changes, up to turns, relative to its size."""
+    """Return the change of shape in each half, up to rotations, relative to the displacement.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(m, N + 1, 3)``, m at least 2.
+    """
     return _halves(nodes, _change)
 
 
 def out_of_plane(nodes: Shapes) -> Halves:
-    """How far the motion of nodes (m, N + 1, 3) is from a plane, one of its own in each half."""
+    """Return the out-of-plane share of each half, with respect to its own principal plane.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(m, N + 1, 3)``, m at least 2.
+    """
     return _halves(nodes, planarity)
 
 
 def flattens(nodes: Shapes) -> bool:
-    """Tell whether the motion of nodes (m, N + 1, 3) comes nearer to a plane all the time.
+    """Return True if the out-of-plane share of a motion falls from quarter to quarter.
 
-    From quarter to quarter, each with a plane of its own: a fall that is too slow to be seen from
-    one half to the other is seen by its going one way.
+    Each quarter has its own principal plane. A monotone fall over the quarters shows a change that
+    is too slow for the comparison of the halves.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(m, N + 1, 3)``, m at least 4.
     """
-    shares = [planarity(part) for part in np.array_split(nodes, _PARTS)]
+    shares = [planarity(part) for part in np.array_split(nodes, _PART_COUNT)]
     falls = all(later < earlier for earlier, later in pairwise(shares))
-    return falls and shares[-1] < (1.0 - _SLOWEST) * shares[0]
+    return falls and shares[-1] < (1.0 - _MIN_FALL) * shares[0]
 
 
-def swing(nodes: Shapes) -> Halves:
-    """How far the displacement of nodes (m, N + 1, 3) swings about its mean, squared [L^2].
+def displacement_variance(nodes: Shapes) -> Halves:
+    """Return the variance of the displacement in each half [L^2], under a Hann weight.
 
-    Under a Hann weight, which makes a cut through a period harmless.
+    The weight removes the effect of a cut period.
+
+    Parameters
+    ----------
+    nodes
+        Node positions [L], shape ``(m, N + 1, 3)``, m at least 2.
     """
     return _halves(displacement(nodes), _variance)
 

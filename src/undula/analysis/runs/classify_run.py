@@ -10,16 +10,13 @@ import numpy as np
 
 from undula.analysis.observables.trajectory import Motion
 from undula.analysis.regimes.classify import (
-    MOST,
-    SIGNIFICANT,
-    STRAIGHT,
-    UNDECIDED,
-    Verdict,
+    SIGNIFICANCE_FACTOR,
     coarse_verdict,
     first_verdict,
     with_exponents,
 )
 from undula.analysis.regimes.lyapunov import Lyapunov, NotFollowed, lyapunov
+from undula.analysis.regimes.verdict import MAX_MARGIN, STRAIGHT, UNDECIDED, Verdict
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.accuracy import Errors
 from undula.analysis.runs.credibility import Grounds
@@ -161,7 +158,9 @@ def _arrived(arrival: ReachedState) -> Verdict:
         }
     told = f"{reason}: disturbances decay at {-rate:.4g}/T at least"
     name = STRAIGHT if arrival.state is None else arrival.kind
-    return Verdict(name, told, evidence, arrival.time, margin=min(MOST, limit / max(near, 1e-9)))
+    return Verdict(
+        name, told, evidence, arrival.time, margin=min(MAX_MARGIN, limit / max(near, 1e-9))
+    )
 
 
 def _first(
@@ -205,7 +204,7 @@ def _with_exponents(
     verdict = with_exponents(judged.verdict, found)
     if not parting or model.unwrapped:
         return Classified(verdict, motion, found)
-    chaotic = found.value > SIGNIFICANT * found.error
+    chaotic = found.value > SIGNIFICANCE_FACTOR * found.error
     watched = FOLDS / found.value if chaotic else WATCHED * duration
     pairs = finite_separation(
         model, model.positions(last), watched, progress=partial(watch, "pairs of nearby runs")

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from undula.analysis.observables.trajectory import Motion
-from undula.analysis.regimes.classify import STRAIGHT, UNDECIDED, Verdict
+from undula.analysis.regimes.verdict import STRAIGHT, UNDECIDED, Verdict
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.accuracy import Errors
 from undula.analysis.runs.settling import UNMOVED

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from undula.analysis.regimes.classify import UNDECIDED
+from undula.analysis.regimes.verdict import UNDECIDED
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.classify_run import CutShortError, Exponents, Watch
 from undula.analysis.runs.run import Run

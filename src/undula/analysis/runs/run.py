@@ -18,8 +18,8 @@ from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.precession import Precession, precession
 from undula.analysis.observables.shapes import azimuth, envelope, tip_height, tip_radius
 from undula.analysis.observables.trajectory import Motion
-from undula.analysis.regimes.classify import STRAIGHT, Verdict
 from undula.analysis.regimes.lyapunov import Lyapunov
+from undula.analysis.regimes.verdict import STRAIGHT, Verdict
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.accuracy import Errors, Health, errors_of, health_of
 from undula.analysis.runs.checkpoint import checkpoint

@@ -21,10 +21,10 @@ from typing import Any, Self
 import numpy as np
 
 from undula.analysis.observables.trajectory import Motion
-from undula.analysis.regimes.evidence import GROWTH_FACTOR
+from undula.analysis.regimes.evidence import MIN_GROWTH_FACTOR
 from undula.analysis.regimes.late_window import PLANAR_TOLERANCE
-from undula.analysis.regimes.names import leaves_its_plane
-from undula.analysis.regimes.recurrence import RECURRENT
+from undula.analysis.regimes.names import plane_change
+from undula.analysis.regimes.recurrence import MAX_RECURRENCE_DISTANCE
 from undula.analysis.regimes.trends import Halves, out_of_plane
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.early_stop import ReachedState
@@ -174,9 +174,7 @@ def when_observed(
         Returns the verdict's name and the time that it lacks [T], if any; called if needed.
     """
     # A motion that leaves its plane has no name yet, which takes far less time to see.
-    if observation.trial_windows and (
-        leaves_its_plane(window.nodes) or classify()[0] != TRIAL_VERDICT
-    ):
+    if observation.trial_windows and (plane_change(window.nodes) or classify()[0] != TRIAL_VERDICT):
         if observation.trial_windows == 1 and schedule.rtol > TIGHT_RTOL:
             return Tighten(TIGHT_RTOL)
         return Observe(_next_window(observation, window))
@@ -200,7 +198,7 @@ def when_irregular(
     """
     if not schedule.open_ended or observation is not None:
         return Continue()
-    if returned.min(initial=np.inf) <= RECURRENT:
+    if returned.min(initial=np.inf) <= MAX_RECURRENCE_DISTANCE:
         return Continue()  # it recurs, nearly, and takes its time to settle
     if schedule.until == "solved" and schedule.rtol > TIGHT_RTOL:
         return Tighten(TIGHT_RTOL)
@@ -230,6 +228,6 @@ def _next_window(observation: Observation, window: Motion) -> Observation:
 
 def _halves_until_flat(share: Halves) -> float:
     """Return the number of half windows after which a motion is planar, if it flattens at all."""
-    if not share.first > GROWTH_FACTOR * share.last > GROWTH_FACTOR * PLANAR_TOLERANCE:
+    if not share.first > MIN_GROWTH_FACTOR * share.last > MIN_GROWTH_FACTOR * PLANAR_TOLERANCE:
         return 0.0
     return math.log(share.last / PLANAR_TOLERANCE) / math.log(share.first / share.last)

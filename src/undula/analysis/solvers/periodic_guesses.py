@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 
 from undula.analysis.observables.shapes import displacement
-from undula.analysis.regimes.classify import STRAIGHT
 from undula.analysis.regimes.recurrence import Recurrence, recurrence
+from undula.analysis.regimes.verdict import STRAIGHT
 from undula.analysis.runs.run import Run
 from undula.arrays import Instants, Nodes, Shapes
 

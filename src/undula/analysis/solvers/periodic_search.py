@@ -7,7 +7,7 @@ import xarray as xr
 
 from undula.analysis.observables.alignment import comparison
 from undula.analysis.parameters import FORCE
-from undula.analysis.regimes.recurrence import RECURRENT
+from undula.analysis.regimes.recurrence import MAX_RECURRENCE_DISTANCE
 from undula.analysis.run_settings import Ending
 from undula.analysis.runs.integrate import integrate
 from undula.analysis.runs.run import Run
@@ -25,7 +25,7 @@ from undula.numerics.orbits.periodic_orbit import Orbit, find_orbit, with_shorte
 
 # Largest distance of a solution from the last shape of the run, relative to the displacement: ten
 # times that of a recurrence, as a run may not have settled yet.
-_LARGEST_DISTANCE = 10.0 * RECURRENT
+_LARGEST_DISTANCE = 10.0 * MAX_RECURRENCE_DISTANCE
 # Largest relative difference of their periods; those of a settled run agree to 1e-4.
 _PERIOD_DIFFERENCE = 1e-2
 

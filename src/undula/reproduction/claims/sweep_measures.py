@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from undula.analysis.maps.basins import basins
-from undula.analysis.regimes.classify import UNDECIDED
+from undula.analysis.regimes.verdict import UNDECIDED
 from undula.arrays import Points
 from undula.reproduction.claims.measures import FORCE
 from undula.schema.sweep_axes import TRY, axes_of, verdicts_of
