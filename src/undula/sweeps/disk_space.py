@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from undula.analysis.runs.last_period import INSTANTS, SHAPES
-from undula.analysis.runs.memory_needed import told_size
+from undula.analysis.runs.memory_needed import size_text
 from undula.errors import InputError
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
@@ -29,8 +29,8 @@ def refuse_too_large_a_store(path: Path, study: Study) -> None:
     if free is not None and needed > free:
         cure = "study.keep = 'verdict' or " if study.keep != "verdict" else ""
         raise InputError(
-            f"{study.count} points with study.keep = '{study.keep}' take {told_size(needed)} on the"
-            f" disk, and {told_size(free)} are free at {path}; use {cure}fewer points"
+            f"{study.count} points with study.keep = '{study.keep}' take {size_text(needed)} on the"
+            f" disk, and {size_text(free)} are free at {path}; use {cure}fewer points"
         )
 
 

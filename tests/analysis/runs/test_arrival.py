@@ -14,14 +14,8 @@ from small_studies import done, study_of
 from undula.analysis.observables.shapes import displacement
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.checkpoint import resume
-from undula.analysis.runs.early_stop import (
-    NEAR,
-    SLOWEST,
-    ReachedState,
-    StateDetector,
-    motion_of,
-    turned_by,
-)
+from undula.analysis.runs.early_stop import MAX_STATE_DISTANCE, MIN_RATE_RATIO, StateDetector
+from undula.analysis.runs.reached_state import ReachedState, motion_of, turned_by
 from undula.analysis.runs.run import Run
 from undula.analysis.runs.settling import MotionRates
 from undula.analysis.runs.stop_rule import TIGHT_RTOL
@@ -193,17 +187,17 @@ def arrives(spinning: un.Spinning, rate: float, part: float) -> bool:
 
 def test_a_motion_has_to_come_nearer_as_fast_as_the_spectrum_says(spinning: un.Spinning) -> None:
     rate = spinning.leading_rate
-    for part in (0.5 * NEAR, 1e-3):
+    for part in (0.5 * MAX_STATE_DISTANCE, 1e-3):
         assert arrives(spinning, rate, part)
         # As on a torus, or next to one, or where something else is at work.
         assert not arrives(spinning, 0.0, part)
-        assert not arrives(spinning, 0.9 * SLOWEST * rate, part)
+        assert not arrives(spinning, 0.9 * MIN_RATE_RATIO * rate, part)
         assert not arrives(spinning, -rate, part)
 
 
 def test_what_is_far_away_has_not_arrived(spinning: un.Spinning) -> None:
     # In twenty looks it falls by a factor of three.
-    assert not arrives(spinning, spinning.leading_rate, 6.0 * NEAR)
+    assert not arrives(spinning, spinning.leading_rate, 6.0 * MAX_STATE_DISTANCE)
 
 
 def test_a_state_that_is_shown_turns_at_its_rate(spinning: un.Spinning) -> None:

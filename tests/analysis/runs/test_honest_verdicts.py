@@ -179,7 +179,7 @@ def test_a_run_whose_energy_does_not_balance_is_undecided() -> None:
     # Where nothing but the tolerance moves the body.
     model = TEN.with_(force=20.0)
     run = ended(model, un.kicked(model), atol=1e-2)
-    assert run.health.power_balance_error > credibility.UNSOUND
+    assert run.health.power_balance_error > credibility.MAX_BALANCE_ERROR
     assert run.verdict.name == "undecided"
     assert "power balance" in run.verdict.reason
     assert "rtol" in run.verdict.reason

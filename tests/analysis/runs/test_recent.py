@@ -6,7 +6,7 @@ import undula as un
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.fine_tail import close_up
 from undula.analysis.runs.run import Run
-from undula.analysis.runs.sample_buffer import KEPT, SampleBuffer, parts_of
+from undula.analysis.runs.sample_buffer import STORED_ROWS, SampleBuffer, parts_of
 from undula.analysis.runs.simulation import Simulation
 
 
@@ -46,9 +46,9 @@ def test_rows_are_thinned_for_a_longer_interval() -> None:
 
 def test_rows_are_kept_up_to_a_number() -> None:
     recent = SampleBuffer()
-    for first in range(0, 10 * KEPT, KEPT // 4):
-        recent.note(0.25, first, counted(first, first + KEPT // 4))
-    assert KEPT <= sum(map(len, recent.rows)) < KEPT + KEPT // 4
+    for first in range(0, 10 * STORED_ROWS, STORED_ROWS // 4):
+        recent.note(0.25, first, counted(first, first + STORED_ROWS // 4))
+    assert STORED_ROWS <= sum(map(len, recent.rows)) < STORED_ROWS + STORED_ROWS // 4
 
 
 def test_an_interval_is_divided_by_a_power_of_two_and_then_left_alone() -> None:

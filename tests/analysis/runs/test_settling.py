@@ -7,13 +7,13 @@ import pytest
 
 import undula as un
 from undula.analysis.run_settings import Schedule
+from undula.analysis.runs.settled_motion import Settled
 from undula.analysis.runs.settling import (
-    MANY_REPETITIONS,
     NOISE_IN_RTOL,
+    NOISE_REPETITIONS,
     REPETITIONS,
     TOLERANCE_IN_RTOL,
     MotionRates,
-    Settled,
     SettlingDetector,
 )
 from undula.analysis.runs.stop_rule import OBSERVED_CYCLES, OBSERVED_CYCLES_AT_NOISE, observation_of
@@ -44,7 +44,7 @@ def told(offs: list[float]) -> Settled | None:
     return watched(offs).settled()
 
 
-def noise(size: float, count: int = 2 * MANY_REPETITIONS) -> list[float]:
+def noise(size: float, count: int = 2 * NOISE_REPETITIONS) -> list[float]:
     return (size * np.random.default_rng(3).uniform(-1.0, 1.0, count)).tolist()
 
 
@@ -63,14 +63,14 @@ def test_what_hovers_farther_than_the_tolerance_has_not_settled() -> None:
 
 def test_what_creeps_has_not_settled() -> None:
     # Each step is an error of the integration, all of them together are more than the tolerance.
-    offs = np.linspace(0.0, 3.0 * TOLERANCE_IN_RTOL * RTOL, 2 * MANY_REPETITIONS)
+    offs = np.linspace(0.0, 3.0 * TOLERANCE_IN_RTOL * RTOL, 2 * NOISE_REPETITIONS)
     assert told(offs.tolist()) is None
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_what_grows_is_not_taken_for_hovering(sign: float) -> None:
     # From the size of errors on, to either side or to both in turn, as where a period doubles.
-    growth = 1.06 ** np.arange(2 * MANY_REPETITIONS)
+    growth = 1.06 ** np.arange(2 * NOISE_REPETITIONS)
     offs = VISIBLE * growth / growth[-1] * sign ** np.arange(growth.size)
     assert told(offs.tolist()) is None
 

@@ -21,6 +21,7 @@ from undula.arrays import Instants, Shapes
 
 __all__ = [
     "Frequency",
+    "frequency_fields",
     "rotation_frequency",
     "shape_frequency",
     "shape_swings",
@@ -171,3 +172,18 @@ def rotation_frequency(time: Instants, rotation_angle: Instants) -> Frequency | 
     deviation = max(abs(other - value) for other in others)
     scale = 1.0 + float(np.max(np.abs(turns)))
     return Frequency(value, deviation + ROUND_OFF_CYCLES * scale / float(time[-1] - time[0]))
+
+
+def frequency_fields(name: str, frequency: Frequency | None) -> dict[str, float | None]:
+    """Return a frequency and its error in plain JSON types.
+
+    Parameters
+    ----------
+    name
+        Key of the frequency; that of its error is the name with "_error".
+    frequency
+        None for a quantity without a frequency, which gives two times None.
+    """
+    if frequency is None:
+        return {name: None, f"{name}_error": None}
+    return {name: float(frequency.value), f"{name}_error": float(frequency.error)}

@@ -1,4 +1,4 @@
-"""How well a run was computed: the figures that every result carries."""
+"""Accuracy of a run: errors of conserved quantities and effort, in every result."""
 
 import math
 from collections.abc import Mapping
@@ -16,20 +16,20 @@ from undula.models.rod.joint import FOLDED
 from undula.numerics.integration import stepper_state as names
 from undula.numerics.integration.system import RATES
 
-#: Energy [B/L] that round-off alone puts through: positions to 1e-15 L, under a force of some 1000.
-ROUND_OFF = 1e-12
+#: Energy put through by round-off alone [B/L]: positions to 1e-15 L under a force of 1000 B/L^2.
+ROUND_OFF_ENERGY = 1e-12
 
 
 @dataclass(frozen=True)
 class Errors:
-    """What a run got wrong, by what is known to be kept.
+    """Errors of a run in its conserved quantities.
 
     Attributes
     ----------
     power_balance_error : float
         Largest |elastic energy gained + dissipated - put in| up to any sample, relative to the
-        energy dissipated and put in over the run. Zero for the exact solution, and where no more
-        energy went through than round-off makes.
+        energy dissipated and put in over the run. Zero for the exact solution, and if the energy
+        put through is round-off.
     length_error : float
         Largest relative change of length of a link at any sample; of extensible links, their
         strain.
@@ -46,15 +46,15 @@ class Health:
     Attributes
     ----------
     power_balance_error, length_error : float
-        As of `Errors`.
+        As in `Errors`.
     largest_joint_angle : float
-        Largest angle between neighbouring links, the clamp's axis before the first, at any sample
-        [rad]; beyond pi where joints wind up.
+        Largest angle between neighbouring links, or the axis of the clamp and the first link, at
+        any sample [rad]; beyond pi for joints that wind up.
     folded : bool
-        Whether the angle of a joint came to pi, where its energy has a kink, at a sample or between
-        two. Never where joints wind up.
+        True if the angle of a joint reached pi, where its energy has a kink, at a sample or between
+        two. Always False for joints that wind up.
     smallest_step, largest_step : float
-        Of the accepted steps [T].
+        Lengths of the accepted steps [T].
     steps, rejected, failed : int
         Steps accepted, rejected for their error, and given up because Newton's method failed.
     factorisations, solves : int
@@ -62,7 +62,7 @@ class Health:
     frame : str
         The frame in which the run ended, "lab" or "co-rotating".
     frame_changes : int
-        How often the frame was changed.
+        Number of changes of the frame.
     """
 
     power_balance_error: float
@@ -81,14 +81,34 @@ class Health:
 
 
 def errors_of(motion: Motion) -> Errors:
-    """Return what a run of `motion` got wrong."""
+    """Return the errors of a run.
+
+    Parameters
+    ----------
+    motion : Motion
+    """
     return Errors(power_balance_error(motion), length_error(motion))
 
 
 def health_of(
     model: Model, motion: Motion, errors: Errors, checkpoint: Mapping[str, Array]
 ) -> Health:
-    """Return the health of a run of `motion`, with these errors, that ended at a checkpoint."""
+    """Return errors and effort of a run.
+
+    Parameters
+    ----------
+    model : Model
+    motion : Motion
+        Trajectory of the whole run.
+    errors : Errors
+        From `errors_of`.
+    checkpoint : mapping of str to ndarray
+        Checkpoint at the end of the run.
+
+    Returns
+    -------
+    Health
+    """
     real, count = checkpoint["memory_real"], checkpoint["memory_count"]
     steps = int(count[names.STEPS])
     angle = 2.0 * math.atan(math.sqrt(largest_bend(motion.nodes)))
@@ -115,45 +135,71 @@ def health_of(
 
 
 def power_balance_error(motion: Motion) -> float:
-    """Return the error of the energy balance, relative to the energy that went through."""
+    """Return the error of the energy balance, relative to the energy put through.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    float
+        At least 0, as in `Errors`.
+    """
     stored = motion.energetics.bending_energy, motion.energetics.stretching_energy
     throughput = float(motion.loss[-1] + abs(motion.work[-1]))
     imbalance: float = largest_imbalance(*stored, motion.work, motion.loss)
-    return imbalance / throughput if throughput > ROUND_OFF else 0.0
+    return imbalance / throughput if throughput > ROUND_OFF_ENERGY else 0.0
 
 
 def length_error(motion: Motion) -> float:
-    """Return the largest relative deviation of a link's length from 1/N at any sample."""
+    """Return the largest relative deviation of a link's length from 1/N at any sample.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    float
+        At least 0.
+    """
     links: int = motion.nodes.shape[1] - 1
     squares: tuple[float, float] = link_squares(motion.nodes)
     return max(abs(math.sqrt(square) * links - 1.0) for square in squares)
 
 
 def folded(motion: Motion, angles: Array) -> bool:
-    """Tell whether a joint, whose angles (m, N) [rad] are given, folded in the course of a motion.
+    """Return True if the angle of a joint reaches pi during a motion.
 
-    It did where it came within `FOLDED` of pi at a sample, or between two samples on the shortest
-    way, as seen from the inner link. In a plane that is the way over pi where the angles to either
-    side add up to more than half a turn.
+    It does if it is within `FOLDED` of pi at a sample, or between two samples on the shortest path
+    in the frame of the inner link. In a plane that is the path through pi if the angles on either
+    side of it add up to more than half a turn.
+
+    Parameters
+    ----------
+    motion : Motion
+    angles : ndarray, shape (m, N)
+        Angles of the joints at the samples [rad].
     """
     if (angles > np.pi - FOLDED).any():
         return True
     sample, joint = np.nonzero(angles[:-1] + angles[1:] > np.pi)
     (inner, first), (later, second) = (_tangents(motion, k, joint) for k in (sample, sample + 1))
     start, end = _product(inner, first), _product(later, second)
-    across = _carried(first - start[:, None] * inner, inner, later)
+    across = _transported(first - start[:, None] * inner, inner, later)
     change = second - end[:, None] * later - across
     square = np.maximum(_product(change, change), np.finfo(float).tiny)
-    # Where the chord between both directions passes the line of the inner link.
+    # The point of the chord between both directions that is nearest to the line of the inner link.
     part = np.clip(-_product(across, change) / square, 0.0, 1.0)
-    aside = np.linalg.norm(across + part[:, None] * change, axis=1)
-    return bool((np.arctan2(aside, -(start + part * (end - start))) < FOLDED).any())
+    distance = np.linalg.norm(across + part[:, None] * change, axis=1)
+    return bool((np.arctan2(distance, -(start + part * (end - start))) < FOLDED).any())
 
 
 def _tangents(motion: Motion, sample: Any, joint: Any) -> tuple[Array, Array]:
-    """Return the unit vectors (k, 3) along the links before and behind joints (k,) at samples (k,).
+    """Return unit vectors (k, 3) along the links before and behind joints (k,) at samples (k,).
 
-    They are seen from a frame that turns with the motion.
+    They are given in a frame that rotates with the motion.
     """
     nodes, angle = motion.nodes, motion.rotation_angle[sample]
     links = [nodes[sample, joint] - nodes[sample, joint - 1]]
@@ -166,10 +212,10 @@ def _tangents(motion: Motion, sample: Any, joint: Any) -> tuple[Array, Array]:
     return inner, outer
 
 
-def _carried(vectors: Array, start: Array, end: Array) -> Array:
-    """Return vectors across unit vectors `start`, turned as these turn to `end` the shortest way.
+def _transported(vectors: Array, start: Array, end: Array) -> Array:
+    """Return vectors across unit vectors `start`, rotated with these to `end` on a shortest path.
 
-    Between opposite ones no way is the shortest, and the vectors stay.
+    Between opposite unit vectors no path is the shortest, and the vectors are not rotated.
     """
     lever = 1.0 + _product(start, end)
     share = np.divide(_product(end, vectors), lever, out=np.zeros_like(lever), where=lever > 0.0)

@@ -1,4 +1,4 @@
-"""Checkpoints: all that a run needs to be resumed exactly, as arrays."""
+"""Checkpoints: arrays from which a run is resumed exactly."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -17,7 +17,16 @@ _DETECTOR = ("seen", "paces", "return_times", "return_nodes")
 
 
 def checkpoint(simulation: Simulation) -> dict[str, Array]:
-    """Return all that `resume` needs, as arrays that stay as they are when the run goes on."""
+    """Return the arrays that `resume` needs, copied so that the run may continue.
+
+    Parameters
+    ----------
+    simulation : Simulation
+
+    Returns
+    -------
+    dict of str to ndarray
+    """
     saved: dict[str, Any] = {
         "states": simulation.states,
         "interval": np.float64(simulation.interval),
@@ -34,21 +43,25 @@ def checkpoint(simulation: Simulation) -> dict[str, Array]:
 
 
 def resume(model: Model, schedule: Schedule, saved: Mapping[str, Array]) -> Simulation:
-    """Return the run that a checkpoint was taken of, ready to go on to the end of a schedule.
+    """Return the run of a checkpoint, ready to continue to the end of a schedule.
 
     Parameters
     ----------
     model : Model
-        The model that ran.
+        The model of the run.
     schedule : Schedule
         Its end may be later than that of the run.
     saved : mapping of str to ndarray
         From `checkpoint`.
 
+    Returns
+    -------
+    Simulation
+
     Raises
     ------
     InputError
-        The run would not fit into the memory of the machine.
+        The samples do not fit in memory.
     """
     memory, mark = (
         StepperState(*(np.array(saved[f"{prefix}_{name}"]) for name in StepperState._fields))

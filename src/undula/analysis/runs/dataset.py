@@ -1,4 +1,4 @@
-"""A run as a labelled dataset: what a result file holds and what views draw."""
+"""A run as a labelled dataset, the content of a result file and the input of views."""
 
 import json
 import platform
@@ -16,7 +16,7 @@ from undula.models.description import model_words
 from undula.models.units import FILAMENT_UNITS, Units
 from undula.schema.formats import RUN_FORMAT
 
-# Files of filaments have named their unit of time like this from the first on.
+# Unit of time in files of filaments, kept from the first format on.
 _TIME = {FILAMENT_UNITS.time: "L^4 zeta_perp / B"}
 _LIBRARIES = ("undula", "numpy", "numba")
 
@@ -24,21 +24,29 @@ _LIBRARIES = ("undula", "numpy", "numba")
 def dataset_of(
     run: Run, *, inputs: Mapping[str, Any] | None = None, load: str | None = None
 ) -> xr.Dataset:
-    """Return a run as a dataset with dims time, node and axis.
+    """Return a run as a dataset with the dimensions time, node and axis.
 
     Parameters
     ----------
     run : Run
     inputs : mapping, optional
-        The complete input that made the run; by default the model's fields and the schedule's.
+        The complete input of the run; by default the fields of its model and schedule.
     load : str, optional
-        Model and load in words, for figures; by default those that their values make.
+        Model and load in words, for figures; by default a description of the model.
 
     Returns
     -------
     xarray.Dataset
-        Variables and attributes as docs/output.md lists them. A close-up of the last periods has a
-        dimension of its own, close_time.
+        Variables and attributes of docs/output.md. A close-up of the last periods has a dimension
+        of its own, close_time.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(4, load=un.TipLoad(0.0))
+    >>> run = un.integrate(model, un.planar(model, 0.1), until=0.001, samples=3)
+    >>> un.dataset_of(run)["nodes"].dims
+    ('time', 'node', 'axis')
     """
     units = run.model.units
     variables = _variables(run.motion, units, "")
@@ -100,7 +108,7 @@ def _variables(motion: Motion, units: Units, prefix: str) -> dict[str, Any]:
 
 
 def _fields(record: Any) -> Any:
-    """Return a frozen record as plain JSON types, with the name of its kind."""
+    """Return a frozen record in plain JSON types, with the name of its type."""
     if not is_dataclass(record) or isinstance(record, type):
         return str(record)
     return {"kind": type(record).__name__} | asdict(record)

@@ -1,15 +1,15 @@
-"""Whether a run has come so near to a stable state that there is no need to wait for it.
+"""Detection of a stable state next to a run, at which a run until "solved" ends.
 
-A run to the solved state is watched for two of them:
+Two kinds of states are detected:
 
-- the straight state, once the motion is small and has fallen to half of what it was;
-- a spinning one: as soon as the shape turns rather than changes, Newton's method takes it to one
-  that only turns. The run has arrived when it is near that state, and the amplitude of its
-  slowest disturbance has fallen as fast as the spectrum of the state says. A motion that goes to
-  some other state, or round on a torus about this one, does not do that.
+- the straight state, once the motion is small and has fallen to half of its maximum;
+- a spinning state: as soon as the shape rotates rather than changes, Newton's method solves for a
+  steadily rotating shape. The run has reached it when the shape is near, and the amplitude of the
+  slowest disturbance has decayed at the rate of the spectrum of the state. A motion towards another
+  state, or on a torus about this one, fails this test.
 
-The run ends there if the state is stable. What is recorded of the run is its trajectory so far, to
-which nothing is added; name and numbers are those of the state.
+The run ends if the state is stable. Its record is the trajectory so far, to which nothing is added;
+name and numbers are those of the state.
 """
 
 import math
@@ -17,14 +17,14 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise, takewhile
-from typing import Any, Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from undula.analysis.observables.alignment import aligned_distance
 from undula.analysis.observables.shapes import displacement
-from undula.analysis.observables.trajectory import Motion
 from undula.analysis.parameters import FORCE
+from undula.analysis.runs.reached_state import ReachedState, turned_by
 from undula.analysis.runs.settling import MotionRates
 from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import (
@@ -37,66 +37,30 @@ from undula.errors import InputError
 from undula.models.initial_states import leading_rate
 from undula.models.model import Model
 from undula.numerics.continuation.newton import newton
-from undula.numerics.integration.system import RATES
 
-#: Change of a shape over its displacement, while it turns by a radian, up to which Newton's method
-#: is tried, at a look, and again each time after twice as many looks.
-RESTLESS, FIRST_TRIED = 0.6, 3
-#: Largest distance of the present shape from the state, relative to the displacement of the state;
-#: and the one up to which it is watched. What linear disturbances leave out is of its square.
-NEAR, WATCHED = 0.25, 0.5
-#: The slowest disturbance has to fall by this factor: by its swings alone, from nonlinearity, it
-#: does so by up to a quarter. And so fast, between this part of the rate of the spectrum (it
-#: would be 0 on a torus about the state) and, while it is not small, this multiple.
-FALLS, SLOWEST, FASTEST, LITTLE = 1.5, 0.5, 2.0, 0.1
-#: Looks over which it may do so: next to thresholds by little from one to the next.
-REMEMBERED = 400
-#: Largest RMS inclination [rad] of a motion that counts as small, for the same reason; and to which
-#: part of the largest so far it has fallen, over three looks in a row.
-SMALL, FALLEN, FALLING = 0.1, 0.5, 3
-#: Steps between looks: a cycle of what rings takes some 30. Twice as many where a shape changes
-#: more than it turns.
-STEPS, STEPS_RESTLESS = 50, 100
-#: The state is shown for so many turns, with so many samples each.
-TURNS, SAMPLES = 2, 32
-
-
-@dataclass(frozen=True)
-class ReachedState:
-    """A stable state that a run was left for.
-
-    Attributes
-    ----------
-    kind : {"straight", "spinning"}
-    time : float
-        When it was left: the time of its last sample [T].
-    distance : float
-        How far its shape was from the state then, up to turns, RMS over the arc length [L].
-    relative : float
-        The same over the displacement of the state; of the straight one, the present inclination
-        over the largest so far.
-    leading_rate : float
-        Largest growth rate of a disturbance of the state [1/T], negative.
-    state : Spinning or None
-        The state, unless it is the straight one.
-    """
-
-    kind: Literal["straight", "spinning"]
-    time: float
-    distance: float
-    relative: float
-    leading_rate: float
-    state: Spinning | None = None
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return it in plain JSON types."""
-        names = ("kind", "time", "distance", "relative", "leading_rate")
-        return {name: getattr(self, name) for name in names}
+#: Largest change of the shape while it rotates by a radian, relative to its displacement, at which
+#: Newton's method is tried; and number of the first check with an attempt, which doubles each time.
+MAX_SHAPE_CHANGE_PER_RADIAN, FIRST_ATTEMPT = 0.6, 3
+#: Largest distance of the shape from a reached state, and of one that is observed, relative to the
+#: displacement of the state. Nonlinear effects are of the order of its square.
+MAX_STATE_DISTANCE, MAX_OBSERVED_DISTANCE = 0.25, 0.5
+#: Least factor by which the slowest disturbance has decayed (nonlinear oscillations alone reach a
+#: factor of 1.25); least and largest ratio of its decay rate to that of the spectrum (0 on a torus
+#: about the state), the latter only beyond the last number, a distance over the displacement.
+MIN_AMPLITUDE_FALL, MIN_RATE_RATIO, MAX_RATE_RATIO, SMALL_DISTANCE = 1.5, 0.5, 2.0, 0.1
+#: Number of stored observations: next to thresholds the decay from one to the next is small.
+MAX_OBSERVATIONS = 400
+#: Largest RMS inclination [rad] of a small motion, as nonlinear effects are of its square; largest
+#: remaining share of the maximum so far, and number of successive checks with a decrease.
+SMALL_INCLINATION, MAX_REMAINING_SHARE, FALLING_CHECKS = 0.1, 0.5, 3
+#: Number of steps between checks (a cycle of a ringing motion takes about 30), and for a shape that
+#: changes more than it rotates.
+STEPS_PER_CHECK, STEPS_PER_CHECK_UNSTEADY = 50, 100
 
 
 @dataclass(frozen=True)
 class _Target:
-    """A stable spinning state that a run may come to, with its slowest disturbance."""
+    """A stable spinning state that a run may reach, with its slowest disturbance."""
 
     state: Spinning
     nodes: Nodes
@@ -104,8 +68,8 @@ class _Target:
     slowest: ComplexArray
 
 
-class _Seen(NamedTuple):
-    """A look at a run: when, how far from the target, with how much of its slowest disturbance."""
+class _TargetObservation(NamedTuple):
+    """Time, relative distance from the target, and amplitude of its slowest disturbance."""
 
     time: float
     distance: float
@@ -114,104 +78,149 @@ class _Seen(NamedTuple):
 
 @dataclass
 class StateDetector:
-    """Looks out for a state next to a run, and remembers what it has seen of it."""
+    """Detector of a stable state next to a run.
+
+    Attributes
+    ----------
+    model : Model
+    steps : int
+        Number of steps until the next check.
+    largest : float
+        Largest displacement of the run so far, in the norm of the integrator [rad].
+    straight_waits : bool
+        True until the stability of the straight state has been computed.
+    looks : int
+        Number of checks for a spinning state.
+    due : float
+        Number of the check with the next attempt to solve for a spinning state.
+    target : _Target or None
+        The stable spinning state that is observed.
+    before : deque of (float, ndarray)
+        Times and unknowns of the last checks before there was a target.
+    seen : deque of _TargetObservation
+        Observations of the target.
+    """
 
     model: Model
-    steps: int = STEPS
+    steps: int = STEPS_PER_CHECK
     largest: float = 0.0
     straight_waits: bool = True
     looks: int = 0
-    due: float = FIRST_TRIED
+    due: float = FIRST_ATTEMPT
     target: _Target | None = None
-    before: deque[tuple[float, Array]] = field(default_factory=lambda: deque(maxlen=FIRST_TRIED))
-    seen: deque[_Seen] = field(default_factory=lambda: deque(maxlen=REMEMBERED))
+    before: deque[tuple[float, Array]] = field(default_factory=lambda: deque(maxlen=FIRST_ATTEMPT))
+    seen: deque[_TargetObservation] = field(default_factory=lambda: deque(maxlen=MAX_OBSERVATIONS))
 
     def arrival(
         self, paces: Sequence[MotionRates], time: float, unknowns: Array
     ) -> ReachedState | None:
-        """Return the state that a run has come to, None if it has to go on.
+        """Return the state that the run has reached.
 
         Parameters
         ----------
         paces
-            What was noted of the run at looks, the last one now.
-        time, unknowns
-            Of the last sample [T], shape ``(n,)``.
+            Rates of the run at its checks, up to the present one.
+        time
+            Time of the last sample [T].
+        unknowns
+            Unknowns of the last sample, shape ``(n,)``.
+
+        Returns
+        -------
+        ReachedState or None
+            None if the run has to continue.
         """
         if not self.model.axisymmetric:
             return None
         self.largest, pace = max(self.largest, paces[-1].displacement), paces[-1]
-        restless = _restlessness(pace)
-        self.steps = STEPS_RESTLESS if restless > 1.0 and pace.displacement > SMALL else STEPS
-        if self.straight_waits and len(paces) >= FALLING:
-            found = self._straight([paces[k] for k in range(-FALLING, 0)], time, unknowns)
-            if found:
-                return found
+        unsteadiness = _unsteadiness(pace)
+        self.steps = (
+            STEPS_PER_CHECK_UNSTEADY
+            if unsteadiness > 1.0 and pace.displacement > SMALL_INCLINATION
+            else STEPS_PER_CHECK
+        )
+        if self.straight_waits and len(paces) >= FALLING_CHECKS:
+            reached = self._straight([paces[k] for k in range(-FALLING_CHECKS, 0)], time, unknowns)
+            if reached:
+                return reached
         if self.model.dimension != 3:
             return None
         self.looks += 1
         self.before.append((time, unknowns))
-        if self.target is None and restless <= RESTLESS and self.looks >= self.due:
-            self._aim(unknowns, pace.turn_rate)
+        if (
+            self.target is None
+            and unsteadiness <= MAX_SHAPE_CHANGE_PER_RADIAN
+            and self.looks >= self.due
+        ):
+            self._solve_for_target(unknowns, pace.turn_rate)
         if self.target is None:
             return None
-        # What was seen before there was a target is held against it as well.
+        # The checks before there was a target count as observations of it.
         while self.before:
-            self.seen.append(self._look(self.target, *self.before.popleft()))
+            self.seen.append(self._observe(self.target, *self.before.popleft()))
         return self._reached(self.target)
 
     def _straight(
-        self, late: Sequence[MotionRates], time: float, unknowns: Array
+        self, rates: Sequence[MotionRates], time: float, unknowns: Array
     ) -> ReachedState | None:
-        sizes = [pace.displacement for pace in late]
-        part = sizes[-1] / self.largest if self.largest > 0.0 else 0.0
+        sizes = [pace.displacement for pace in rates]
+        share = sizes[-1] / self.largest if self.largest > 0.0 else 0.0
         falls = all(later < earlier for earlier, later in pairwise(sizes))
-        if not (falls and sizes[-1] <= SMALL and part <= FALLEN):
+        if not (falls and sizes[-1] <= SMALL_INCLINATION and share <= MAX_REMAINING_SHARE):
             return None
-        self.straight_waits = False  # its spectrum stays what it is
+        self.straight_waits = False  # its spectrum does not change
         rate = leading_rate(self.model)
         if rate >= 0.0:
             return None
-        away = float(displacement(self._nodes(unknowns)))
-        return ReachedState("straight", time, away, part, rate)
+        distance = float(displacement(self._nodes(unknowns)))
+        return ReachedState("straight", time, distance, share, rate)
 
-    def _aim(self, unknowns: Array, rate: float) -> None:
+    def _solve_for_target(self, unknowns: Array, turn_rate: float) -> None:
         """Solve for a state from the present shape."""
         self.due = 2 * self.looks
-        problem = TurningShapeAlone(self.model, FORCE, unknowns, abs(rate))
+        problem = TurningShapeAlone(self.model, FORCE, unknowns, abs(turn_rate))
         try:
-            found = newton(problem, np.append(unknowns, rate), 0.0)
-            if not found.converged:
+            solution = newton(problem, np.append(unknowns, turn_rate), 0.0)
+            if not solution.converged:
                 return
-            y, rate = found.u[:-1], float(found.u[-1])
-            around = Disturbances.of(self.model, y, rate)
+            y, turn_rate = solution.u[:-1], float(solution.u[-1])
+            disturbances = Disturbances.of(self.model, y, turn_rate)
         except (InputError, np.linalg.LinAlgError):
-            return  # there is nothing but the straight state, or a matrix is singular
-        state, nodes = turning_state(self.model, y, rate, around), self._nodes(y)
+            return  # only the straight state exists, or a matrix is singular
+        state, nodes = turning_state(self.model, y, turn_rate, disturbances), self._nodes(y)
         size = float(displacement(nodes))
         if state.stable:
-            self.target = _Target(state, nodes, size, around.amplitude(state.exponents[0]))
-        elif float(aligned_distance(nodes, self._nodes(unknowns)).distance) <= WATCHED * size:
-            self.due = np.inf  # this is the one, and nothing stays there
+            self.target = _Target(state, nodes, size, disturbances.amplitude(state.exponents[0]))
+        elif (
+            float(aligned_distance(nodes, self._nodes(unknowns)).distance)
+            <= MAX_OBSERVED_DISTANCE * size
+        ):
+            self.due = np.inf  # the run is at an unstable state
 
-    def _look(self, target: _Target, time: float, unknowns: Array) -> _Seen:
-        apart = aligned_distance(target.nodes, self._nodes(unknowns))
-        turned = turned_by(self.model, unknowns, np.atleast_1d(apart.angle))[0]
-        size = abs(complex(target.slowest @ (turned - target.state.unknowns)))
-        return _Seen(time, float(apart.distance) / target.size, size)
+    def _observe(self, target: _Target, time: float, unknowns: Array) -> _TargetObservation:
+        alignment = aligned_distance(target.nodes, self._nodes(unknowns))
+        turned = turned_by(self.model, unknowns, np.atleast_1d(alignment.angle))[0]
+        amplitude = abs(complex(target.slowest @ (turned - target.state.unknowns)))
+        return _TargetObservation(time, float(alignment.distance) / target.size, amplitude)
 
     def _reached(self, target: _Target) -> ReachedState | None:
-        """Return the target if the run comes to it."""
+        """Return the target if the run has reached it."""
         now, rate = self.seen[-1], target.state.leading_rate
-        if now.distance > NEAR:
+        if now.distance > MAX_STATE_DISTANCE:
             return None
-        watched = takewhile(lambda one: one.distance <= WATCHED, reversed(self.seen))
-        larger = next((one for one in watched if one.size >= FALLS * now.size), None)
-        if larger is None:
+        observed = takewhile(
+            lambda item: item.distance <= MAX_OBSERVED_DISTANCE, reversed(self.seen)
+        )
+        earlier = next(
+            (item for item in observed if item.size >= MIN_AMPLITUDE_FALL * now.size), None
+        )
+        if earlier is None:
             return None
-        fall = math.log(larger.size / now.size) / (now.time - larger.time) if now.size else math.inf
-        fastest = FASTEST if now.distance > LITTLE else math.inf
-        if not SLOWEST <= -fall / rate <= fastest:
+        fall = (
+            math.log(earlier.size / now.size) / (now.time - earlier.time) if now.size else math.inf
+        )
+        fastest = MAX_RATE_RATIO if now.distance > SMALL_DISTANCE else math.inf
+        if not MIN_RATE_RATIO <= -fall / rate <= fastest:
             return None
         return ReachedState(
             "spinning", now.time, now.distance * target.size, now.distance, rate, target.state
@@ -221,40 +230,6 @@ class StateDetector:
         return self.model.nodes(self.model.positions(unknowns))
 
 
-def turned_by(model: Model, y: Array, angles: Array) -> Array:
-    """Return positions and multipliers (n,) turned about the axis by angles (m,), shape (m, n)."""
-    across = model.equations.turning(y)[0]
-    twice = model.equations.turning(across)[0]
-    return np.asarray(
-        y + np.sin(angles)[:, None] * across + (1.0 - np.cos(angles))[:, None] * twice
-    )
-
-
-def motion_of(arrival: ReachedState, model: Model, last: Array) -> Motion:
-    """Return how the state moves, from the end of the run on.
-
-    Parameters
-    ----------
-    arrival
-        What the run was left for.
-    model
-        What ran.
-    last
-        The last sample of the run, shape ``(n + RATES,)``.
-    """
-    if arrival.state is None:
-        rows = np.zeros((2, last.size))
-        rows[:, :-RATES] = model.straight_unknowns()
-        rows[:, -RATES:] = last[-RATES:]
-        return Motion.of(model, arrival.time - np.arange(2.0) / arrival.leading_rate, rows)
-    state = arrival.state
-    angles = 2.0 * np.pi * np.arange(TURNS * SAMPLES + 1) / SAMPLES * np.sign(state.rate)
-    time, power = angles / state.rate, model.power(state.x)
-    grown = np.stack([angles, time * power[0], time * power[1]], axis=1)
-    rows = np.hstack([turned_by(model, state.unknowns, angles), last[-RATES:] + grown])
-    return Motion.of(model, arrival.time + time, rows)
-
-
-def _restlessness(pace: MotionRates) -> float:
+def _unsteadiness(pace: MotionRates) -> float:
     turned = abs(pace.turn_rate) * pace.displacement
     return pace.shape_speed / turned if turned > 0.0 else np.inf

@@ -1,8 +1,8 @@
-"""The last periods of a run, sampled more finely than the rest.
+"""Close-up: the last periods of a run at finer intervals than the rest.
 
-A long run has too few samples a period to tell what it does or to draw it. Its last periods are
-then taken from what was noted of them on the way, or computed once more from a mark that the
-simulation has kept, which gives the very same trajectory.
+A long run has too few samples in a period to classify or to draw the motion. Its last periods are
+then taken from the sample buffer, or recomputed from a stored state of the integrator, which gives
+exactly the same trajectory.
 """
 
 import math
@@ -13,37 +13,39 @@ import numpy as np
 
 from undula.analysis.observables.trajectory import Motion
 from undula.analysis.run_settings import Schedule
-from undula.analysis.runs.sample_buffer import FEWEST
-from undula.analysis.runs.simulation import ENOUGH_A_PERIOD, Simulation, copied
+from undula.analysis.runs.sample_buffer import MIN_ROWS_PER_PERIOD
+from undula.analysis.runs.simulation import SUFFICIENT_SAMPLES_PER_PERIOD, Simulation, copied
 from undula.arrays import Array, Instants
 from undula.models.model import Model
 from undula.numerics.integration.stepper_state import StepperState
 from undula.numerics.integration.time_loop import advance
 
-#: Periods in a close-up, if the marks reach back so far: frequencies gain with their square.
-PERIODS = 16.0
-#: Of a motion that has not settled, so many: an irregular one takes more to be told as such.
-PERIODS_UNSETTLED = 160.0
-#: What repeats itself is judged from where it does so.
-REPEATING = ("steady", "periodic")
-#: A close-up that has as many samples is made no finer.
-MOST_SAMPLES = 8000
+#: Number of periods in a close-up, if the marks are early enough: the accuracy of frequencies grows
+#: with its square.
+CLOSE_UP_PERIODS = 16.0
+#: Number of periods in the close-up of a motion that has not settled: the classification of an
+#: irregular one needs more.
+UNSETTLED_PERIODS = 160.0
+#: Kinds of settled motions whose close-up begins when they settle.
+RECURRING_KINDS = ("steady", "periodic")
+#: Number of samples from which a close-up is not refined further.
+MAX_SAMPLES = 8000
 
 
 @dataclass(frozen=True)
 class CloseUp:
-    """The last periods of a run at fine intervals, made when somebody asks.
+    """The last periods of a run at fine intervals, computed on first use.
 
     Attributes
     ----------
     model, schedule
-        Those of the run.
-    mark : Memory
-        The integrator's at its beginning or before.
+        Of the run.
+    mark : StepperState
+        State of the integrator at the first time or before.
     time : ndarray, shape (m,)
         Equally spaced times [T].
     noted : ndarray or None
-        The samples, shape (m, n + RATES), if they were noted on the way.
+        The samples, shape (m, n + RATES), if the sample buffer has them.
     """
 
     model: Model
@@ -54,7 +56,7 @@ class CloseUp:
 
     @cached_property
     def motion(self) -> Motion:
-        """The trajectory."""
+        """Trajectory of the close-up."""
         states = self.noted
         if states is None:
             states = sampled_again(self.model, self.schedule, self.mark, self.time)
@@ -62,22 +64,35 @@ class CloseUp:
 
 
 def close_up(simulation: Simulation) -> CloseUp | None:
-    """Return the last periods of a simulation at fine intervals; None where its samples will do."""
+    """Return the close-up of a simulation.
+
+    Parameters
+    ----------
+    simulation : Simulation
+
+    Returns
+    -------
+    CloseUp or None
+        None if the samples of the simulation are fine enough, or no period is known.
+    """
     fast, slow = simulation.detector.periods(simulation.time)
     interval = simulation.interval
-    if fast is None or interval * ENOUGH_A_PERIOD <= fast:
+    if fast is None or interval * SUFFICIENT_SAMPLES_PER_PERIOD <= fast:
         return None
     end = simulation.time
-    periods = PERIODS if simulation.settled or simulation.arrival else PERIODS_UNSETTLED
+    periods = CLOSE_UP_PERIODS if simulation.settled or simulation.arrival else UNSETTLED_PERIODS
     start = max(end - periods * slow, simulation.earliest_mark, _repeating_from(simulation))
-    # Powers of two, so that there are samples at the same times whoever makes them.
+    # Powers of two, so that samples are at the same times for every length of the run.
     parts = 1
-    while interval * FEWEST > parts * fast and parts * (end - start) < MOST_SAMPLES * interval:
+    while (
+        interval * MIN_ROWS_PER_PERIOD > parts * fast
+        and parts * (end - start) < MAX_SAMPLES * interval
+    ):
         parts *= 2
     first, last = math.ceil(start * parts / interval), (simulation.sampled - 1) * parts
     if last - first < 2:
         return None
-    # Round-off must not put the first before the mark.
+    # Round-off must not place the first time before the mark.
     times = np.maximum(interval / parts * np.arange(first, last + 1), start)
     return CloseUp(
         simulation.model,
@@ -90,25 +105,25 @@ def close_up(simulation: Simulation) -> CloseUp | None:
 
 def _repeating_from(simulation: Simulation) -> float:
     settled = simulation.settled
-    return settled.since if settled is not None and settled.kind in REPEATING else 0.0
+    return settled.since if settled is not None and settled.kind in RECURRING_KINDS else 0.0
 
 
 def sampled_again(model: Model, schedule: Schedule, mark: StepperState, times: Array) -> Array:
-    """Sample a part of a run once more, at other times.
+    """Recompute a part of a run at other times.
 
     Parameters
     ----------
     model, schedule
-        Those of the run.
-    mark : Memory
-        One of its marks.
+        Of the run.
+    mark : StepperState
+        A stored state of the integrator.
     times : ndarray, shape (m,)
-        Increasing times between the mark and the end of the run [T].
+        Rising times between the mark and the end of the run [T].
 
     Returns
     -------
     ndarray, shape (m, n + RATES)
-        The very trajectory of the run, at these times.
+        Samples of exactly the same trajectory at these times.
     """
     memory = copied(mark)
     states = np.empty((times.size, memory.differences.shape[1]))

@@ -1,11 +1,10 @@
-"""Growth of a small but finite separation: Lyapunov exponents as an experiment would see them.
+"""Largest Lyapunov exponent from the growth of a finite separation, as in an experiment.
 
-Two runs from nearby states are compared by their mean positions, each turned about the axis into
+Two runs from nearby states are compared by their mean positions, each rotated about the axis into
 the same half-plane, so that a difference in azimuth does not count. The logarithm of their distance
-grows along a line until the distance is as large as the motion lets it become; its slope, over
+grows linearly until the distance saturates at the size of the motion; its slope, averaged over
 several such pairs along one motion, estimates the largest exponent. Unlike the variational
-equations (`undula.analysis.regimes.lyapunov`) this sees an average over a few e-foldings only, each
-in another place.
+equations (`undula.analysis.regimes.lyapunov`) each pair averages over a few e-foldings only.
 
 Source: Ling, Guo & Kanso (2018), Lyapunov exponents from a finite separation of the mean position.
 """
@@ -24,27 +23,27 @@ from undula.arrays import Array, Instants, State
 from undula.errors import InputError, is_number
 from undula.models.model import Model
 
-#: First separation, of every coordinate in units of the length: far above errors of integration,
-#: and more than ten e-foldings below saturation.
-SEPARATION = 1e-7
-#: A distance beyond this part of how far the mean position is from straight feels the size of the
-#: motion.
-SATURATED = 0.03
-#: E-foldings in which the first separation grows to where it feels the size of any motion.
-FOLDS = 15.0
-#: Pairs of runs, one where the other ends: their scatter tells the error.
-PAIRS = 8
-#: Samples of a pair.
-SAMPLES = 1000
-# The mean position of a straight body: on the axis, half-way up [L].
-_STRAIGHT = np.array([0.0, 0.5])
-# A line through fewer samples is none.
-_FEWEST = 10
+#: Standard deviation of the first separation of every coordinate [L]: far above errors of the
+#: integration, and more than ten e-foldings below saturation.
+FIRST_SEPARATION = 1e-7
+#: Distance at which a separation saturates, as a share of the distance of the mean position from
+#: straight.
+SATURATION_SHARE = 0.03
+#: Number of e-foldings in which the first separation grows to saturation in any motion.
+E_FOLDINGS = 15.0
+#: Number of successive pairs of runs, whose scatter gives the error.
+PAIR_COUNT = 8
+#: Number of samples of a pair.
+SAMPLE_COUNT = 1000
+# Distance from the axis and height of the mean position of the straight filament [L].
+_STRAIGHT_MEAN = np.array([0.0, 0.5])
+# Least number of samples in the fit of a line.
+_MIN_FIT_SAMPLES = 10
 
 
 @dataclass(frozen=True)
 class Separation:
-    """How nearby runs part.
+    """Divergence of nearby runs.
 
     Attributes
     ----------
@@ -52,11 +51,11 @@ class Separation:
         Mean slope of the logarithm of the distance [1/T], and its error: from the scatter over
         pairs, or half the mean difference between the halves of the lines if that is more.
     saturated : int
-        Pairs, of all, whose distance grew until it felt the size of the motion.
+        Number of pairs whose distance saturated.
     time : ndarray, shape (m,)
         Times since the separation [T].
     distance : ndarray, shape (pairs, m)
-        Distances of the mean positions, turned into one half-plane [L].
+        Distances of the mean positions in one half-plane [L].
     """
 
     rate: float
@@ -66,7 +65,7 @@ class Separation:
     distance: Array
 
     def as_dict(self) -> dict[str, float]:
-        """Return its figures in plain JSON types."""
+        """Return rate, error and number of saturated pairs in plain JSON types."""
         return {"rate": self.rate, "error": self.error, "saturated": self.saturated}
 
 
@@ -75,13 +74,13 @@ def finite_separation(
     state: State,
     duration: float,
     *,
-    pairs: int = PAIRS,
+    pairs: int = PAIR_COUNT,
     rtol: float = 1e-9,
     atol: float = 1e-12,
     seed: int = 1,
     progress: Callable[[float], None] | None = None,
 ) -> Separation | NotFollowed:
-    """Measure how fast runs from nearby states part.
+    """Measure the rate of divergence of runs from nearby states.
 
     Parameters
     ----------
@@ -89,24 +88,25 @@ def finite_separation(
     state : ndarray, shape (model.size,)
         A state on the attractor, such as the last one of a run.
     duration : float
-        Time for which each pair is followed [T]: 15 over the largest exponent, if it is known.
+        Length of each pair of runs [T]: 15 over the largest exponent, if it is known.
     pairs : int
         Number of pairs, at least 2.
     rtol, atol : float
-        Tolerances of the integration, far below the first separation of 1e-7.
+        Relative and absolute [rad] error tolerance, far below the first separation of 1e-7.
     seed : int
         Seed of the first separations.
     progress : callable, optional
-        Called with the part of all runs that is done, every few milliseconds.
+        Called with the finished share of all runs, every few milliseconds.
 
     Returns
     -------
     Separation or NotFollowed
+        NotFollowed if an integration fails.
 
     Raises
     ------
     InputError
-        An argument is out of its range, or joints wind up.
+        An argument is out of its range, or the joints of the model wind up.
     """
     if not (is_number(duration) and duration > 0.0):
         raise InputError(f"duration = {duration!r} has to be a positive finite number")
@@ -117,27 +117,29 @@ def finite_separation(
             "a state whose joints have wound up cannot be started from; ask for the Lyapunov"
             " exponents only"
         )
-    schedule = Schedule(until=duration, samples=SAMPLES, rtol=rtol, atol=atol)
+    schedule = Schedule(until=duration, samples=SAMPLE_COUNT, rtol=rtol, atol=atol)
     random = np.random.default_rng(seed)
     time, distances, fits = np.zeros(0), [], []
     for done in range(pairs):
-        nearby = state + SEPARATION * random.normal(size=state.size)
-        both = []
-        for which, x in enumerate((state, nearby)):
-            motion = _run(model, x, schedule, progress, (2 * done + which, 2 * pairs))
+        nearby = state + FIRST_SEPARATION * random.normal(size=state.size)
+        pair = []
+        for member, x in enumerate((state, nearby)):
+            motion = _run(model, x, schedule, progress, (2 * done + member, 2 * pairs))
             if isinstance(motion, NotFollowed):
                 return motion
-            both.append(motion)
-        one, other = both
-        time, state = one.time, model.from_nodes(one.nodes[-1])
-        here, there = _out_and_up(one), _out_and_up(other)
-        distances.append(np.linalg.norm(here - there, axis=1))
-        size = float(np.sqrt(np.mean(np.sum((here - _STRAIGHT) ** 2, axis=1))))
-        fits.append(_fit(time, distances[-1], SATURATED * size))
-    slopes, bends = np.array([slopes for slopes, _ in fits]).T
+            pair.append(motion)
+        first, second = pair
+        time, state = first.time, model.from_nodes(first.nodes[-1])
+        path, other = _radius_and_height(first), _radius_and_height(second)
+        distances.append(np.linalg.norm(path - other, axis=1))
+        size = float(np.sqrt(np.mean(np.sum((path - _STRAIGHT_MEAN) ** 2, axis=1))))
+        fits.append(_fit(time, distances[-1], SATURATION_SHARE * size))
+    slopes, slope_changes = np.array([slopes for slopes, _ in fits]).T
     return Separation(
         rate=float(slopes.mean()),
-        error=max(float(slopes.std(ddof=1)) / np.sqrt(pairs), 0.5 * abs(float(bends.mean()))),
+        error=max(
+            float(slopes.std(ddof=1)) / np.sqrt(pairs), 0.5 * abs(float(slope_changes.mean()))
+        ),
         saturated=sum(saturated for _, saturated in fits),
         time=time,
         distance=np.array(distances),
@@ -151,7 +153,7 @@ def _run(
     progress: Callable[[float], None] | None,
     place: tuple[int, int],
 ) -> Motion | NotFollowed:
-    """Return a run from a state, which is one of so many."""
+    """Return the trajectory from a state; `place` is its number and the number of all runs."""
     simulation, (number, count) = Simulation.begin(model, x, schedule), place
     while simulation.advance():
         if progress:
@@ -161,7 +163,7 @@ def _run(
     return Motion.of(model, simulation.times, simulation.states)
 
 
-def _out_and_up(motion: Motion) -> Array:
+def _radius_and_height(motion: Motion) -> Array:
     """Return distance from the axis and height (m, 2) of the mean position [L]."""
     x, y, z = mean_position(motion.nodes).T
     return np.stack([np.hypot(x, y), z], axis=1)
@@ -174,7 +176,7 @@ def _fit(time: Instants, distance: Array, level: float) -> tuple[tuple[float, fl
     reached.
     """
     above = np.flatnonzero(distance > level)
-    end = max(_FEWEST, int(above[0])) if above.size else distance.size
+    end = max(_MIN_FIT_SAMPLES, int(above[0])) if above.size else distance.size
     logs = np.log(np.maximum(distance[:end], np.finfo(float).tiny))
     first, last = slice(0, end // 2), slice(end // 2, end)
     slope, early, late = (

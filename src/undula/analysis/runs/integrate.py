@@ -1,4 +1,4 @@
-"""Run a model: the call behind `undula.integrate` and behind the command `undula run`."""
+"""Time integration of a model from a start to the end of a run."""
 
 import time
 from collections.abc import Callable
@@ -22,20 +22,31 @@ from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.numerics.integration import stepper_state as names
 
-#: Maxima of the energy after which a run to the settled state is asked whether its motion is
-#: irregular, and after twice as many again and again.
-FIRST_ASKED = 240
-#: Why there are no Lyapunov exponents although they were begun.
-STOPPED = ("they were interrupted", "they were out of their budget of time")
-#: Runs that ended so are not looked at any longer.
-CUT_SHORT = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
+#: Number of maxima of the energy after which an open-ended run is first tested for irregular
+#: motion; it doubles with each test.
+FIRST_TEST_MAXIMA = 240
+#: Reasons for unfinished Lyapunov exponents.
+CUT_SHORT_REASONS = ("they were interrupted", "they were out of their budget of time")
+#: Endings of runs whose Lyapunov exponents are not computed.
+CUT_SHORT_ENDINGS = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run is: time reached and its end at the latest [T], length of the step, seconds.
+    """Progress of a run.
 
-    While Lyapunov exponents are computed `exponents` says what of them, and the part that is done.
+    Attributes
+    ----------
+    time, end : float
+        Time reached and latest end [T].
+    step : float
+        Length of the present step [T].
+    steps : int
+        Number of steps so far.
+    seconds : float
+        Elapsed time [s].
+    exponents : tuple of (str, float) or None
+        Name and finished share of a computation of Lyapunov exponents.
     """
 
     time: float
@@ -68,43 +79,53 @@ def integrate(
     start : ndarray, shape (model.size,)
         The state at time 0, for example ``kicked(model)``.
     until : float, "settled" or "solved"
-        Time at which the run ends [T]; or until the motion repeats itself; or until then at the
-        latest, but only until a stable straight or spinning state is found next to it.
+        Time at which the run ends [T], positive. "settled": the run ends when the motion repeats
+        itself. "solved": it also ends next to a stable straight or spinning state.
     limit : float
-        Time at which a run to the settled state gives up [T].
+        Latest end of a run until "settled" or "solved" [T], positive.
     samples : int
-        Number of stored samples; a run to the settled state has up to twice as many.
-    rtol, atol : float
-        Error tolerance of a step: of the tangents, relative to their RMS inclination to the axis,
-        and absolute [rad].
+        Number of stored samples, from 2 to 10^9; up to twice as many for "settled" and "solved".
+    rtol : float
+        Relative error tolerance of a step, from 1e-12 to 1e-2: of the tangents, relative to their
+        RMS inclination to the axis.
+    atol : float
+        Absolute error tolerance of a step [rad], above 0 and at most 1e-2.
     budget : float
-        Seconds after which the run is ended with what it has; Lyapunov exponents are a part of it.
+        Largest elapsed time, with Lyapunov exponents [s]; the run then ends with what it has.
     lyapunov : bool
-        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
+        True for Lyapunov exponents of every motion, not only of an irregular one.
     progress : callable, optional
         Called with a `Progress` every few milliseconds.
 
     Returns
     -------
     Run
-        Also when the run was interrupted (Ctrl-C), ran out of its budget, or failed: its `ending`
-        says so.
+        Also for a run that was interrupted (Ctrl-C), exceeded its budget, or failed, as its
+        `ending` shows.
 
     Raises
     ------
     InputError
         An argument is out of its range or the start is no state of the model.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(4, load=un.TipLoad(0.0))
+    >>> run = un.integrate(model, un.planar(model, 0.1), until=0.001, samples=3)
+    >>> run.motion.nodes.shape
+    (3, 5, 3)
     """
     schedule = Schedule(until=until, limit=limit, samples=samples, rtol=rtol, atol=atol)
     simulation = Simulation.begin(model, start, schedule)
     begun = time.monotonic()
-    judged = carry_on(simulation, budget=budget, progress=progress)
-    if simulation.ending in CUT_SHORT:
+    run = carry_on(simulation, budget=budget, progress=progress)
+    if simulation.ending in CUT_SHORT_ENDINGS:
         return Run.of(simulation, Exponents.NEVER)
     if lyapunov:
         left = budget - (time.monotonic() - begun)
         return with_exponents(simulation, Exponents.ALWAYS, budget=left, progress=progress)
-    return judged or Run.of(simulation)
+    return run or Run.of(simulation)
 
 
 def carry_on(
@@ -113,18 +134,26 @@ def carry_on(
     budget: float = float("inf"),
     progress: Callable[[Progress], None] | None = None,
 ) -> Run | None:
-    """Advance a simulation to its end, or until Ctrl-C, or until the budget of seconds is spent.
+    """Advance a simulation to its end, to an interruption, or until its budget is exceeded.
 
-    A run to the settled state also ends when its motion is seen to be chaotic or quasi-periodic. If
-    it has settled but cannot be named yet, it goes on for as long as that takes, up to its limit.
+    An open-ended run also ends when its motion is chaotic or quasi-periodic. A settled motion that
+    is still undecided is observed for longer, up to the limit.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    budget : float
+        Largest elapsed time [s].
+    progress : callable, optional
+        Called with a `Progress` every few milliseconds.
 
     Returns
     -------
     Run or None
-        The run, if its end took judging it.
+        The run, if its end needed a classification.
     """
     begun = time.monotonic()
-    due = FIRST_ASKED
+    due = FIRST_TEST_MAXIMA
     while due <= simulation.detector.seen:
         due *= 2
     with interruptible() as interrupted:
@@ -133,9 +162,9 @@ def carry_on(
             goes_on, seconds = simulation.advance(), time.monotonic() - begun
             if not goes_on:
                 settled = simulation.ending is Ending.SETTLED
-                judged = _observed(simulation, watch) if settled else None
+                run = _observed(simulation, watch) if settled else None
                 if simulation.ending is not Ending.RUNNING:
-                    return judged
+                    return run
             simulation.apply(when_cut_short(seconds, budget, interrupted=interrupted()))
             if simulation.ending is not Ending.RUNNING:
                 return None
@@ -143,9 +172,9 @@ def carry_on(
                 progress(_progress(simulation, seconds))
             if simulation.detector.seen >= due:
                 due *= 2
-                judged = _irregular(simulation, watch)
-                if judged is not None:
-                    return judged
+                run = _irregular(simulation, watch)
+                if run is not None:
+                    return run
 
 
 def with_exponents(
@@ -155,9 +184,24 @@ def with_exponents(
     budget: float = float("inf"),
     progress: Callable[[Progress], None] | None = None,
 ) -> Run:
-    """Judge a run by Lyapunov exponents, too, unless Ctrl-C or the budget of seconds ends them.
+    """Classify a run with Lyapunov exponents.
 
-    Then the run has none, and tells why (`Run.without_lyapunov`).
+    After an interruption or beyond the budget the run has none, and gives the reason
+    (`Run.without_lyapunov`).
+
+    Parameters
+    ----------
+    simulation : Simulation
+    exponents : Exponents
+        Condition for computing them.
+    budget : float
+        Largest elapsed time [s].
+    progress : callable, optional
+        Called with a `Progress` every few milliseconds.
+
+    Returns
+    -------
+    Run
     """
     with interruptible() as interrupted:
         watch = _watch(simulation, time.monotonic(), budget, interrupted, progress)
@@ -171,24 +215,24 @@ def _watch(
     interrupted: Callable[[], bool],
     progress: Callable[[Progress], None] | None,
 ) -> Watch:
-    """Return what shows how far exponents are, and ends them after Ctrl-C or the budget."""
+    """Return a callback that reports the progress of exponents, and ends them when due."""
 
-    def watch(what: str, part: float) -> None:
+    def watch(name: str, share: float) -> None:
         seconds = time.monotonic() - begun
         if interrupted():
-            raise CutShortError(STOPPED[0])
+            raise CutShortError(CUT_SHORT_REASONS[0])
         if seconds > budget:
-            raise CutShortError(STOPPED[1])
+            raise CutShortError(CUT_SHORT_REASONS[1])
         if progress is not None:
-            progress(replace(_progress(simulation, seconds), exponents=(what, part)))
+            progress(replace(_progress(simulation, seconds), exponents=(name, share)))
 
     return watch
 
 
 def _observed(simulation: Simulation, watch: Watch) -> Run:
-    """Return a run that has settled; have it go on if that does not suffice to classify it."""
+    """Return the result of a settled run; continue it if that does not suffice to classify it."""
     run, observation = Run.of(simulation), simulation.observation
-    assert observation is not None  # which is what it has settled to
+    assert observation is not None  # as the run has settled
 
     def classify() -> tuple[str, float | None]:
         verdict = run.judged(watch).verdict
@@ -201,7 +245,7 @@ def _observed(simulation: Simulation, watch: Watch) -> Run:
 
 
 def _irregular(simulation: Simulation, watch: Watch) -> Run | None:
-    """Return a run that waits for its motion to repeat itself if it is seen not to."""
+    """Return the result of an open-ended run whose motion is irregular, None if it continues."""
     returned = simulation.detector.returned()
     decision = when_irregular(simulation.schedule, simulation.observation, returned)
     simulation.apply(decision)

@@ -1,4 +1,4 @@
-"""What a run takes of memory, told before it begins, and what there is."""
+"""Memory that the samples of a run need, and memory that the process may use."""
 
 import os
 import sys
@@ -10,41 +10,57 @@ from undula.errors import InputError
 from undula.models.model import Model
 from undula.numerics.integration.system import RATES
 
-#: Limits of the group of processes, as of a container or of a job of a batch system.
+#: Files with the memory limit of a control group, such as a container or a batch job [bytes].
 _GROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
-_NUMBER = 8
-#: So many bytes are there, wherever a run is begun; nearly none takes more.
-LITTLE = 100_000_000
+_BYTES_PER_NUMBER = 8
+#: Memory that every machine has [bytes]; hardly any run needs more.
+ALWAYS_AVAILABLE = 100_000_000
 
 
 def refuse_too_large(model: Model, schedule: Schedule) -> None:
-    """Refuse a run whose samples cannot fit in memory.
+    """Refuse a run whose samples do not fit in memory.
+
+    Parameters
+    ----------
+    model : Model
+    schedule : Schedule
 
     Raises
     ------
     InputError
-        It would take more than there is.
+        The samples need more memory than the process may use.
     """
     needed = needed_memory(model, schedule)
-    if needed < LITTLE:
+    if needed < ALWAYS_AVAILABLE:
         return
     most = memory()
     if most is not None and needed > most:
         raise InputError(
-            f"samples = {schedule.samples} of {model.links + 1} nodes take {told_size(needed)} of"
-            f" memory, and {told_size(most)} are there; give fewer samples"
+            f"samples = {schedule.samples} of {model.links + 1} nodes take {size_text(needed)} of"
+            f" memory, and {size_text(most)} are there; give fewer samples"
         )
 
 
 def needed_memory(model: Model, schedule: Schedule) -> int:
-    """Return the bytes that the samples of a run take at least."""
-    # Rows of the integrator, twice as they are put together, and positions of nodes.
+    """Return the least memory that the samples of a run need.
+
+    Parameters
+    ----------
+    model : Model
+    schedule : Schedule
+
+    Returns
+    -------
+    int
+        [bytes]
+    """
+    # Rows of the integrator, twice while they are concatenated, and positions of nodes.
     row = 2 * (model.position_mask.size + RATES) + 3 * (model.links + 1)
-    return _NUMBER * row * int(schedule.samples) * (2 if schedule.open_ended else 1)
+    return _BYTES_PER_NUMBER * row * int(schedule.samples) * (2 if schedule.open_ended else 1)
 
 
 def memory() -> int | None:
-    """Return the bytes of memory that this process may have, None where that is not known."""
+    """Return the memory that this process may use [bytes], None if it is unknown."""
     return min(_limits(), default=None)
 
 
@@ -52,22 +68,22 @@ def _limits() -> Iterator[int]:
     try:
         yield os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):
-        return  # no system that tells
+        return  # this system does not report its memory
     for path in _GROUP_LIMITS:
         try:
             yield int(Path(path).read_text(encoding="ascii"))
         except (OSError, ValueError):
-            continue  # there is no such limit
+            continue  # this system has no such limit
     if sys.platform != "win32":
         import resource
 
         soft, _ = resource.getrlimit(resource.RLIMIT_AS)
         if soft != resource.RLIM_INFINITY:
-            yield max(0, soft - _taken())
+            yield max(0, soft - _used_address_space())
 
 
-def _taken() -> int:
-    """Return the bytes of address space that this process has taken already."""
+def _used_address_space() -> int:
+    """Return the address space that this process uses already [bytes]."""
     try:
         pages = Path("/proc/self/statm").read_text(encoding="ascii").split()[0]
     except OSError:
@@ -75,8 +91,14 @@ def _taken() -> int:
     return int(pages) * os.sysconf("SC_PAGE_SIZE")
 
 
-def told_size(size: int) -> str:
-    """Return a number of bytes in words."""
+def size_text(size: int) -> str:
+    """Return a number of bytes with a unit, as text.
+
+    Parameters
+    ----------
+    size : int
+        [bytes], at least 0.
+    """
     for limit, unit in ((1e12, "TB"), (1e9, "GB"), (1e6, "MB")):
         if size >= limit:
             return f"{size / limit:.3g} {unit}"

@@ -1,4 +1,4 @@
-"""A finished run: what was computed, how well, and what it shows."""
+"""Result of a run: trajectory, accuracy, verdict and measured quantities."""
 
 import math
 from collections.abc import Mapping
@@ -10,6 +10,7 @@ import numpy as np
 
 from undula.analysis.observables.frequency import (
     Frequency,
+    frequency_fields,
     rotation_frequency,
     shape_frequency,
     shape_swings,
@@ -24,10 +25,10 @@ from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.accuracy import Errors, Health, errors_of, health_of
 from undula.analysis.runs.checkpoint import checkpoint
 from undula.analysis.runs.classify_run import Classified, Exponents, Watch, failed, judge
-from undula.analysis.runs.early_stop import ReachedState
 from undula.analysis.runs.fine_tail import CloseUp, close_up
 from undula.analysis.runs.finite_separation import Separation
-from undula.analysis.runs.settling import Settled
+from undula.analysis.runs.reached_state import ReachedState
+from undula.analysis.runs.settled_motion import Settled
 from undula.analysis.runs.simulation import Simulation
 from undula.analysis.runs.stop_rule import Observation
 from undula.analysis.states.extrapolation import links_are_body
@@ -44,22 +45,31 @@ class Run:
     model : Model
     schedule : Schedule
     ending : Ending
-        Why it ended; `cause` says more where it failed.
+        Reason for the end of the run.
+    cause : str
+        Cause and remedy of a failure.
     motion : Motion
-        The whole run at the asked samples.
+        Trajectory of the whole run at the requested samples.
     closer : CloseUp or None
-        Its last periods at finer intervals; None where the samples are fine enough.
+        The last periods at finer intervals; None if the samples are fine enough.
     observation : Observation or None
-        How it repeats itself, and how long that was observed; None if it does not.
+        Observation of the settled motion; None if it has not settled.
     arrival : ReachedState or None
-        The state that a run to the solved one was left for: its verdict and figures are those of
-        the state, its motion the trajectory so far.
+        The stable state that the run has reached, which has the verdict and the measured
+        quantities; the motion is the trajectory so far.
     tight_from : float or None
-        Time from which on its steps are more exact than was asked for [T].
+        Time from which on the steps are more exact than requested [T].
     checkpoint : mapping of str to ndarray
-        Arrays from which it can be resumed exactly.
+        Arrays from which the run is resumed exactly.
     exponents : Exponents
-        When Lyapunov exponents are computed.
+        Condition for computing Lyapunov exponents.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(4, load=un.TipLoad(0.0))
+    >>> un.integrate(model, un.planar(model, 0.1), until=0.001, samples=3).ending.value
+    'done'
     """
 
     model: Model
@@ -76,8 +86,8 @@ class Run:
 
     @classmethod
     def of(cls, simulation: Simulation, exponents: Exponents = Exponents.IF_IRREGULAR) -> Self:
-        """Return the result that a simulation has come to so far."""
-        seen = simulation.observation  # the last step may lie beyond the samples
+        """Return the result of a simulation so far."""
+        observation = simulation.observation  # the last step may lie beyond the samples
         return cls(
             model=simulation.model,
             schedule=simulation.schedule,
@@ -85,7 +95,7 @@ class Run:
             cause=simulation.cause,
             motion=Motion.of(simulation.model, simulation.times, simulation.states),
             closer=close_up(simulation),
-            observation=seen.from_at_most(simulation.time) if seen else None,
+            observation=observation.from_at_most(simulation.time) if observation else None,
             arrival=simulation.arrival,
             tight_from=simulation.tight_from,
             checkpoint=checkpoint(simulation),
@@ -94,13 +104,13 @@ class Run:
 
     @property
     def settled(self) -> Settled | None:
-        """How it repeats itself, if it was watched for that and does."""
+        """The settled motion; None if the run has not settled or was not watched for it."""
         return None if self.observation is None else self.observation.settled
 
     def judged(self, watch: Watch) -> Self:
-        """Return the run, judged at once: `watch` is told how far exponents are."""
+        """Return the run after its classification, with a callback for the exponents."""
         if "_judged" not in vars(self):
-            vars(self)["_judged"] = self._judge(watch)  # which is where it is kept
+            vars(self)["_judged"] = self._judge(watch)  # the value of the cached property
         return self
 
     @cached_property
@@ -123,91 +133,85 @@ class Run:
 
     @cached_property
     def errors(self) -> Errors:
-        """What it got wrong, by what is known to be kept: a part of its health."""
+        """Errors in conserved quantities, a part of the health."""
         return errors_of(self.motion)
 
     @cached_property
     def health(self) -> Health:
-        """How well it was computed."""
+        """Errors and effort of the run."""
         return health_of(self.model, self.motion, self.errors, self.checkpoint)
 
     def since(self, time: float) -> Motion:
-        """Return the part of the run from a time on at intervals that a motion is named from."""
+        """Return the motion from a time [T] on, at intervals fine enough for a classification."""
         return (self.motion if self.closer is None else self.closer.motion).late(time)
 
     @property
     def verdict(self) -> Verdict:
-        """What the run ends in."""
+        """Classification of the final motion."""
         return self._judged.verdict
 
     @property
     def close_up(self) -> Motion | None:
-        """Its last periods at finer intervals, to be drawn, computed when somebody asks.
-
-        None where the samples are fine enough, or where they show that it returns to straight.
-        """
+        """Motion of the last periods at finer intervals; None if not needed, or if straight."""
         straight = self.verdict.name == STRAIGHT and self._judged.motion is self.motion
         return None if self.closer is None or straight else self.closer.motion
 
     @property
     def lyapunov(self) -> Lyapunov | None:
-        """Lyapunov exponents, if they were asked for or it took them to tell what the motion is."""
+        """Lyapunov exponents, if they were requested or the classification needed them."""
         return self._judged.exponents
 
     @property
     def without_lyapunov(self) -> str:
-        """Why there are no exponents, or no pairs of runs, although they were asked for."""
+        """Reason for missing exponents, or pairs of runs, that were requested."""
         return self._judged.without
 
     @property
     def separation(self) -> Separation | None:
-        """How fast runs from nearby states part, if Lyapunov exponents were asked for."""
+        """Divergence of runs from nearby states, if Lyapunov exponents were requested."""
         return self._judged.separation
 
     @cached_property
     def window(self) -> Motion:
-        """The late part of the run that the verdict and all figures below are about."""
+        """The late window of the verdict and of all measured quantities."""
         return self._judged.motion.late(self.verdict.window_start)
 
     @cached_property
     def shown(self) -> Motion:
-        """The same part at intervals that are fine enough to follow single periods."""
+        """The late window at intervals fine enough to resolve single periods."""
         if self.arrival is not None:
             return self.window
         return (self.close_up or self.motion).late(self.verdict.window_start)
 
     @property
     def last_shape(self) -> Nodes:
-        """Nodes (N + 1, 3) at its end [L]; those of the state that it was left for."""
+        """Nodes (N + 1, 3) at the end [L], or those of the reached state."""
         return np.asarray((self.motion if self.arrival is None else self.window).nodes[-1])
 
     @cached_property
     def frequency(self) -> Frequency | None:
-        """Frequency of the whole motion [cycles/T], positive; None for a straight one.
-
-        The sense of turning is that of the `rotation_frequency`.
-        """
-        found = self.verdict.evidence
-        # The verdict has looked for it in the same window.
-        if "frequency" not in found or self.verdict.name == STRAIGHT:
+        """Frequency of the whole motion [cycles/T], positive; None for a straight one."""
+        evidence = self.verdict.evidence
+        # The classification has measured it in the same window.
+        if "frequency" not in evidence or self.verdict.name == STRAIGHT:
             return None
-        return Frequency(found["frequency"], found["frequency_error"])
+        return Frequency(evidence["frequency"], evidence["frequency_error"])
 
     @cached_property
     def rotation_frequency(self) -> Frequency | None:
-        """Frequency of turning about the axis, positive from x to y [cycles/T]."""
+        """Frequency of rotation about the axis, positive from x to y [cycles/T]."""
         whole = self.frequency
         if self.verdict.name == "spinning" and whole is not None:
             turns = self.verdict.evidence["turns"]
-            return replace(whole, value=math.copysign(whole.value, turns))  # it is the same
+            return replace(whole, value=math.copysign(whole.value, turns))
         if self.verdict.name == STRAIGHT:
             return None
-        late = self.window
-        return rotation_frequency(late.time, late.rotation_angle)
+        window = self.window
+        return rotation_frequency(window.time, window.rotation_angle)
 
     @cached_property
     def shape_frequency(self) -> Frequency | None:
-        """How often the shape repeats up to rotation and reflection [cycles/T]."""
+        """Frequency of the shape up to rotations and reflections [cycles/T]."""
         if self.verdict.name == STRAIGHT:
             return None
         late = self.window
@@ -218,35 +222,35 @@ class Run:
 
     @cached_property
     def precession(self) -> Precession | None:
-        """How the motion goes round the axis; None for a straight one, or one without maxima."""
+        """Precession of the motion; None for a straight one, or without maxima."""
         late = self.shown
         return None if self.verdict.name == STRAIGHT else precession(late.time, late.nodes)
 
     def figures(self) -> dict[str, Any]:
-        """Return what was measured on the window, in plain JSON types."""
-        late = self.window
-        shape = self.verdict.evidence.get("planarity")
+        """Return the quantities measured in the window, in plain JSON types."""
+        window = self.window
+        share = self.verdict.evidence.get("planarity")
         return {
-            **_told("frequency", self.frequency),
-            **_told("rotation_frequency", self.rotation_frequency),
-            **_told("shape_frequency", self.shape_frequency),
-            "bending_energy": asdict(envelope(late.energetics.bending_energy)),
-            "tip_radius": asdict(envelope(tip_radius(late.nodes))),
-            "tip_height": asdict(envelope(tip_height(late.nodes))),
-            "planarity": planarity(late.nodes) if shape is None else shape,
+            **frequency_fields("frequency", self.frequency),
+            **frequency_fields("rotation_frequency", self.rotation_frequency),
+            **frequency_fields("shape_frequency", self.shape_frequency),
+            "bending_energy": asdict(envelope(window.energetics.bending_energy)),
+            "tip_radius": asdict(envelope(tip_radius(window.nodes))),
+            "tip_height": asdict(envelope(tip_height(window.nodes))),
+            "planarity": planarity(window.nodes) if share is None else share,
         }
 
     def summary(self) -> dict[str, Any]:
-        """Return the answer of the run in plain JSON types."""
-        late = self.window
+        """Return all results in plain JSON types, as docs/output.md lists them."""
+        window = self.window
         units, force = self.model.units, self.model.load.force
-        further = units.force_in(force)
+        other_units = units.force_in(force)
         return {
             "status": self.ending.value,
             "cause": self.cause or None,
             "units": units.names(),
             "force": force,
-            **({"force_in": further} if further else {}),
+            **({"force_in": other_units} if other_units else {}),
             "links": self.model.links,
             "error_of": "body" if links_are_body(self.model) else "links",
             "verdict": self.verdict.name,
@@ -260,7 +264,7 @@ class Run:
             "winding_angle": float(azimuth(self.motion.nodes)[-1]),
             "precession": self._precession(),
             "time": float(self.motion.time[-1]),
-            "window": [float(late.time[0]), float(late.time[-1])],
+            "window": [float(window.time[0]), float(window.time[-1])],
             "settled": self.observation.as_dict() if self.observation else None,
             "settled_from": self.settled.since if self.settled else None,
             "solved": self.arrival.as_dict() if self.arrival else None,
@@ -275,13 +279,13 @@ class Run:
         return {**self.lyapunov.as_dict(), "finite_separation": parting}
 
     def _precession(self) -> dict[str, float] | None:
-        """Return how a body that is held in one direction goes round, which others do evenly."""
+        """Return the precession of a filament without rotational symmetry, None for others."""
         if self.model.axisymmetric or self.precession is None:
             return None
         return asdict(self.precession)
 
     def __str__(self) -> str:
-        """One line: what it ends in, at which frequency, and how well it was computed."""
+        """Return verdict, frequency and accuracy in one line."""
         frequency = self.frequency
         rate = ""
         if frequency:
@@ -293,8 +297,3 @@ class Run:
             f" (power balance to {self.health.power_balance_error:.1g},"
             f" length to {self.health.length_error:.1g}, {self.health.steps} steps)"
         )
-
-
-def _told(name: str, found: Frequency | None) -> dict[str, float | None]:
-    value, error = (None, None) if found is None else (float(found.value), float(found.error))
-    return {name: value, f"{name}_error": error}

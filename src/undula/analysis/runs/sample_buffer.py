@@ -1,8 +1,8 @@
-"""The last samples of a run at finer intervals than the rest, noted on the way.
+"""Buffer of the last samples of a run at finer intervals than the others.
 
-To have a sample costs a polynomial, to compute the last periods once more all their steps. A run
-that waits for its motion to settle therefore notes more of them than it will keep, as soon as it
-knows how fast the motion is and that the samples of the run are too few to follow it.
+Sampling during the run costs one polynomial evaluation; recomputing costs all the steps. An open-
+ended run therefore stores fine samples of its last periods as soon as its period is known and its
+samples are too few to resolve it.
 """
 
 from collections import deque
@@ -12,12 +12,13 @@ import numpy as np
 
 from undula.arrays import Array
 
-#: Rows that are kept, for the 160 periods in which a motion that has not settled is looked at.
-KEPT = 12000
-#: Rows a period: so many are asked for, and between these bounds the interval is left as it is.
-ASKED, FEWEST, MOST = 40.0, 32.0, 96.0
-#: The finest interval as a part of that of the run.
-FINEST = 256
+#: Number of stored rows, enough for the 160 periods of the close-up of a motion that has not
+#: settled.
+STORED_ROWS = 12000
+#: Number of rows in a period: that of a new interval, and the bounds of one that is kept.
+TARGET_ROWS_PER_PERIOD, MIN_ROWS_PER_PERIOD, MAX_ROWS_PER_PERIOD = 40.0, 32.0, 96.0
+#: Largest ratio of the interval of the run to that of the buffer.
+MAX_PARTS = 256
 
 
 @dataclass
@@ -39,28 +40,50 @@ class SampleBuffer:
     rows: deque[Array] = field(default_factory=deque)
 
     def note(self, interval: float, first: int, rows: Array) -> None:
-        """Take down rows from the `first` multiple of an interval on."""
+        """Store rows at successive multiples of an interval.
+
+        Parameters
+        ----------
+        interval : float
+            Time between rows [T].
+        first : int
+            Multiple of the first row.
+        rows : ndarray, shape (m, n + RATES)
+        """
         if self.following(interval) != first:
             self.rows.clear()
         elif interval != self.interval:
             parts = round(interval / self.interval)
             whole = np.concatenate(self.rows)
-            # A copy, for a view would hold on to all of them.
+            # A view would keep all rows alive.
             self.rows = deque([whole[(len(whole) - self.end) % parts :: parts].copy()])
         self.interval, self.end = interval, first + len(rows)
         self.rows.append(rows)
-        kept = sum(map(len, self.rows))
-        while kept - len(self.rows[0]) >= KEPT:
-            kept -= len(self.rows.popleft())
+        stored = sum(map(len, self.rows))
+        while stored - len(self.rows[0]) >= STORED_ROWS:
+            stored -= len(self.rows.popleft())
 
     def following(self, interval: float) -> int | None:
-        """Return which multiple of an interval comes next; None if multiples of it are missing."""
+        """Return the next multiple of an interval [T]; None if earlier multiples are missing."""
         if not self.rows or interval < self.interval:
             return None
         return -(-self.end // round(interval / self.interval))
 
     def samples(self, interval: float, first: int, last: int) -> Array | None:
-        """Return the rows at multiples of an interval, the last one among them, if all are here."""
+        """Return the rows at multiples of an interval.
+
+        Parameters
+        ----------
+        interval : float
+            Time between rows [T].
+        first, last : int
+            First and last multiple, both included.
+
+        Returns
+        -------
+        ndarray or None
+            Shape (m, n + RATES); None if a row is missing.
+        """
         if not self.rows or interval < self.interval:
             return None
         parts = round(interval / self.interval)
@@ -71,14 +94,23 @@ class SampleBuffer:
         return rows[first * parts - begin : last * parts - begin + 1 : parts].copy()
 
 
-def parts_of(interval: float, period: float, kept: float) -> int:
-    """Return in how many parts, a power of two, to divide an interval to follow a period.
+def parts_of(interval: float, period: float, present: float) -> int:
+    """Return the number of parts of an interval, a power of two, that resolve a period.
 
-    `kept` is the interval of the rows so far, 0 without any, which stays if it will do.
+    Parameters
+    ----------
+    interval, period : float
+        Interval of the run and period of its motion [T].
+    present : float
+        Present interval of the buffer [T], which is kept if it suffices; 0 for an empty buffer.
     """
-    if kept and FEWEST <= period / kept <= MOST and kept <= interval:
-        return round(interval / kept)
+    if (
+        present
+        and MIN_ROWS_PER_PERIOD <= period / present <= MAX_ROWS_PER_PERIOD
+        and present <= interval
+    ):
+        return round(interval / present)
     parts = 1
-    while interval * ASKED > parts * period and parts < FINEST:
+    while interval * TARGET_ROWS_PER_PERIOD > parts * period and parts < MAX_PARTS:
         parts *= 2
     return parts

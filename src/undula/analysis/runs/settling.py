@@ -1,16 +1,16 @@
-"""Whether a motion has settled: whether it repeats itself, up to a rotation about the axis.
+"""Detection of a settled motion: one that repeats itself up to a rotation about the axis.
 
-Judged while a run goes on, from what the integrator notes:
+It is judged during a run on rates and shapes recorded by the integrator:
 
-- at rest: the displacement has become a small part of what it was;
-- steady: the shape changes by less than the tolerance in all that is still to come;
-- periodic: at successive maxima of the elastic energy the shape comes back, after every one or
-  every few of them, to within the tolerance in all that is still to come.
+- at rest: the displacement has become a small part of the initial one;
+- steady: the remaining change of the shape is less than the tolerance;
+- periodic: at successive maxima of the elastic energy, or at every few of them, the shape recurs,
+  and its remaining change is less than the tolerance.
 
-"All that is still to come" is what is left of a geometric decay, measured on the run itself: a
-motion that creeps is not taken for one that has arrived. What grows or does not decay has not
-settled, unless it is below the errors of the integration. A motion that leaves an unstable state
-more slowly than that cannot be told from a settled one by any run; its spectrum tells.
+The remaining change is the sum of a geometric decay measured on the run, so that a slow drift does
+not count as settled. A change that grows or does not decay has not settled, unless it is below the
+errors of the integration. A motion that leaves an unstable state more slowly than that looks
+settled in every run; only the spectrum of the state shows the difference.
 """
 
 import math
@@ -18,69 +18,56 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, takewhile
-from typing import Literal
 
 import numpy as np
 
 from undula.analysis.observables.alignment import Compare, aligned_distance, fixed_distance
 from undula.analysis.observables.shapes import displacement
+from undula.analysis.runs.settled_motion import Settled
 from undula.arrays import Array, Nodes
 
-#: Tolerance of the repetition, relative to the displacement, in units of rtol. A hundred local
-#: errors are about what a few periods accumulate.
+#: Tolerance of the recurrence, relative to the displacement [rtol]: a few periods accumulate about
+#: a hundred local errors.
 TOLERANCE_IN_RTOL = 100.0
-#: Repetitions closer than so many rtol cannot be told from errors of the integration.
+#: Largest distance of a recurrence that errors of the integration make [rtol].
 NOISE_IN_RTOL = 10.0
-#: Repetitions, or turns, that have to agree.
+#: Number of recurrences, or turns, that have to agree.
 REPETITIONS = 5
-#: Repetitions after which changes that neither grow nor add up are known to be noise, for which
-#: single ones may be too large: what the steps do in step with the motion (an even number).
-MANY_REPETITIONS = 20
-#: Changes that are larger by more than this factor in the later half of them grow; they lead
-#: somewhere if they add up to more than this times the largest.
-HOVERING = 1.5
-#: Most maxima of the energy that one period may have.
-MOST_MAXIMA = 8
-#: Looks at the pace that are kept.
-MOST_LOOKS = 1000
-#: A decay by less than this a repetition is none.
-SLOWEST_DECAY = 0.999
-#: Changes that add up to this part of their sum or more have one direction: they are no noise.
-DIRECTED = 0.7
-#: An inclination [rad] that round-off alone makes.
-UNMOVED = 1e-12
-#: A shape that moves by less than this part of the displacement in a period is on its way to rest.
-LEAST_SWING = 0.02
-
-
-@dataclass(frozen=True)
-class Settled:
-    """A motion that repeats itself.
-
-    Attributes
-    ----------
-    kind : {"at rest", "still", "steady", "periodic"}
-        Straight, bent and unmoved, turning with one shape, or coming back to it.
-    since : float
-        Time from which on it does, to the tolerance [T].
-    remaining : float
-        What it may still change by, relative to the displacement.
-    period : float or None
-        Time after which the shape repeats up to rotation and reflection [T]; None if it is steady.
-    turn : float or None
-        Time of one turn about the axis [T]; None without rotation.
-    """
-
-    kind: Literal["at rest", "still", "steady", "periodic"]
-    since: float
-    remaining: float
-    period: float | None
-    turn: float | None
+#: Number of recurrences (even) after which changes that neither grow nor add up count as noise also
+#: if single ones are large: errors of steps that are in phase with the motion.
+NOISE_REPETITIONS = 20
+#: Largest factor of noise: of the largest change from the earlier half of the recurrences to the
+#: later one, and of the accumulated change over the largest single one.
+MAX_NOISE_GROWTH = 1.5
+#: Largest number of maxima of the energy in one period.
+MAX_PERIOD_MAXIMA = 8
+#: Number of recorded rates that are stored.
+MAX_STORED_RATES = 1000
+#: Largest ratio of successive changes that counts as a decay.
+MAX_DECAY_RATIO = 0.999
+#: Least accumulated change, as a share of the sum of the changes, of a drift: noise has less.
+MIN_DIRECTED_SHARE = 0.7
+#: Largest inclination that round-off makes [rad].
+ROUND_OFF_INCLINATION = 1e-12
+#: Least motion of a shape in a period, relative to the displacement; one with less is steady.
+MIN_SWING = 0.02
 
 
 @dataclass(frozen=True)
 class MotionRates:
-    """How the system moved at an instant, measured as the integrator measures: see `size`."""
+    """Rates of the motion at an instant, in the norm of the integrator, see `error_norm`.
+
+    Attributes
+    ----------
+    time : float
+        Time [T].
+    shape_speed : float
+        Rate of change of the shape without rotation [rad/T].
+    displacement : float
+        Distance from straight [rad].
+    turn_rate : float
+        Rate of rotation about the axis [rad/T].
+    """
 
     time: float
     shape_speed: float
@@ -95,37 +82,48 @@ class MotionRates:
 
 @dataclass
 class SettlingDetector:
-    """Records how a run moves, and detects whether its motion has settled.
+    """Recorder of the motion of a run that detects a settled motion.
 
     Attributes
     ----------
     rtol : float
-        Relative tolerance of the integration, which sets those of the verdict.
+        Relative tolerance of the integration, the unit of the tolerances of the recurrence.
     start : float
-        Displacement at the start, as the integrator measures it; 0 of one that is straight.
+        Displacement at the start in the norm of the integrator [rad]; 0 for a straight start.
     compare : callable
-        How shapes are compared.
+        Distance between shapes, up to rotations or without them.
+    paces : deque of MotionRates
+        The last recorded rates.
+    returns : deque of (float, ndarray)
+        Time [T] and nodes (N + 1, 3) [L] at the last maxima of the energy.
     seen : int
-        Maxima of the energy in all.
+        Number of all maxima of the energy so far.
     """
 
     rtol: float
     start: float
     compare: Compare = aligned_distance
-    paces: deque[MotionRates] = field(default_factory=lambda: deque(maxlen=MOST_LOOKS))
+    paces: deque[MotionRates] = field(default_factory=lambda: deque(maxlen=MAX_STORED_RATES))
     returns: deque[tuple[float, Nodes]] = field(
-        default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MOST_MAXIMA)
+        default_factory=lambda: deque(maxlen=(REPETITIONS + 1) * MAX_PERIOD_MAXIMA)
     )
     seen: int = 0
 
     def note(self, pace: MotionRates, returns: Sequence[tuple[float, Nodes]]) -> None:
-        """Take down the pace at a look, and times and shapes at energy maxima since the last."""
+        """Record the rates at a check, and times and shapes at energy maxima since the last one.
+
+        Parameters
+        ----------
+        pace : MotionRates
+        returns : sequence of (float, ndarray)
+            Time [T] and nodes (N + 1, 3) [L] of each maximum.
+        """
         self.paces.append(pace)
         self.seen += len(returns)
         self.returns.extend(returns)
 
     def to_arrays(self) -> dict[str, Array]:
-        """Return all that was taken down, as arrays."""
+        """Return the record as arrays by name."""
         return {
             "seen": np.array(float(self.seen)),
             "paces": np.array([tuple(vars(pace).values()) for pace in self.paces]).reshape(-1, 4),
@@ -134,14 +132,14 @@ class SettlingDetector:
         }
 
     def note_arrays(self, saved: Mapping[str, Array]) -> None:
-        """Take down what `to_arrays` gave."""
+        """Add a record from `to_arrays`."""
         self.seen = int(saved["seen"])
         self.paces.extend(MotionRates(*map(float, row)) for row in saved["paces"])
         times = map(float, saved["return_times"])
         self.returns.extend(zip(times, saved["return_nodes"], strict=True))
 
     def settled(self) -> Settled | None:
-        """Return how the motion has settled, None if it has not."""
+        """Return the settled motion, None if it has not settled."""
         if self.compare is fixed_distance:
             return self._at_rest() or self._resting() or self._periodic()
         return self._at_rest() or self._steady() or self._periodic()
@@ -149,7 +147,9 @@ class SettlingDetector:
     def _at_rest(self) -> Settled | None:
         start, last = self.start, self.paces[-1].displacement
         if start == 0.0:
-            return Settled("at rest", 0.0, 0.0, None, None) if last <= UNMOVED else None
+            return (
+                Settled("at rest", 0.0, 0.0, None, None) if last <= ROUND_OFF_INCLINATION else None
+            )
         part = last / start
         if part > TOLERANCE_IN_RTOL * self.rtol:
             return None
@@ -160,56 +160,71 @@ class SettlingDetector:
         if last.turn is None:
             return None
         since = last.time - REPETITIONS * last.turn
-        late = list(takewhile(lambda pace: pace.time >= since, reversed(self.paces)))[::-1]
-        if len(late) < REPETITIONS or late[0] is self.paces[0]:
+        recent = list(takewhile(lambda pace: pace.time >= since, reversed(self.paces)))[::-1]
+        if len(recent) < REPETITIONS or recent[0] is self.paces[0]:
             return None
-        drifts = [pace.shape_speed * last.turn / pace.displacement for pace in late]
-        remaining = _still_to_come(drifts, (late[-1].time - late[0].time) / last.turn, self.rtol)
+        drifts = [pace.shape_speed * last.turn / pace.displacement for pace in recent]
+        remaining = _remaining_change(
+            drifts, (recent[-1].time - recent[0].time) / last.turn, self.rtol
+        )
         if remaining is None:
             return None
-        return Settled("steady", late[0].time, remaining, None, last.turn)
+        return Settled("steady", recent[0].time, remaining, None, last.turn)
 
     def _periodic(self) -> Settled | None:
         near = np.flatnonzero(self.returned() <= TOLERANCE_IN_RTOL * self.rtol) + 1
-        for lag in near.tolist():  # mostly none, so that nearly all looks cost nothing
+        for lag in near.tolist():  # mostly empty, so that most checks cost nothing
             times, shapes = self._repetitions(lag, REPETITIONS)
             if len(times) <= REPETITIONS:
                 return None
             changes = self._changes(shapes[:-1], shapes[1:]).tolist()
-            directed = self._changes(shapes[0], shapes[-1]) > DIRECTED * sum(changes)
-            remaining = _still_to_come(changes, len(changes) - 1.0, self.rtol, directed=directed)
+            directed = self._changes(shapes[0], shapes[-1]) > MIN_DIRECTED_SHARE * sum(changes)
+            remaining = _remaining_change(changes, len(changes) - 1.0, self.rtol, directed=directed)
             if remaining is None:
-                remaining = self._hovering(lag)
+                remaining = self._noise_amplitude(lag)
             if remaining is None:
                 continue
-            # What comes back after the shortest of them comes back after its multiples as well.
-            shortest = next(each for each in near.tolist() if lag % each == 0)
+            # A motion with the shortest period recurs at its multiples as well.
+            shortest = next(shorter for shorter in near.tolist() if lag % shorter == 0)
             period = (times[-1] - times[0]) / REPETITIONS * shortest / lag
             last = self.paces[-1]
-            if last.shape_speed * period < LEAST_SWING * last.displacement:
+            if last.shape_speed * period < MIN_SWING * last.displacement:
                 return Settled("steady", times[0], remaining, None, last.turn)
             return Settled("periodic", times[0], remaining, period, last.turn)
         return None
 
     def _repetitions(self, lag: int, count: int) -> tuple[list[float], Array]:
-        """Return times and shapes at so many repetitions back, and now, or as many as there are."""
-        kept = list(islice(reversed(self.returns), 0, count * lag + 1, lag))[::-1]
-        return [time for time, _ in kept], np.array([nodes for _, nodes in kept])
+        """Return times and shapes of the last `count` recurrences and the newest shape."""
+        selected = list(islice(reversed(self.returns), 0, count * lag + 1, lag))[::-1]
+        return [time for time, _ in selected], np.array([nodes for _, nodes in selected])
 
-    def _hovering(self, lag: int) -> float | None:
-        """Return how far shapes hover about one another that have long gone nowhere."""
-        times, shapes = self._repetitions(lag, MANY_REPETITIONS)
-        if len(times) <= MANY_REPETITIONS:
+    def _noise_amplitude(self, lag: int) -> float | None:
+        """Return the largest change of shapes that recur with noise, None if they drift or grow."""
+        times, shapes = self._repetitions(lag, NOISE_REPETITIONS)
+        if len(times) <= NOISE_REPETITIONS:
             return None
         early, late = np.split(self._changes(shapes[:-1], shapes[1:]), 2)
         change = float(max(np.max(early), np.max(late)))
-        apart = float(np.max(self._changes(shapes[:-1], shapes[-1])))
-        if np.max(late) > HOVERING * np.max(early) or apart > HOVERING * change:
+        spread = float(np.max(self._changes(shapes[:-1], shapes[-1])))
+        if np.max(late) > MAX_NOISE_GROWTH * np.max(early) or spread > MAX_NOISE_GROWTH * change:
             return None
-        return max(apart, change) if max(apart, change) <= TOLERANCE_IN_RTOL * self.rtol else None
+        return max(spread, change) if max(spread, change) <= TOLERANCE_IN_RTOL * self.rtol else None
 
     def periods(self, duration: float) -> tuple[float | None, float]:
-        """Return the shortest and the longest period at work, of those within a duration [T]."""
+        """Return the shortest and the longest period of the motion.
+
+        Parameters
+        ----------
+        duration : float
+            Time of the run so far [T]; longer periods are ignored.
+
+        Returns
+        -------
+        shortest : float or None
+            [T]; None without a period.
+        longest : float
+            [T]; the duration without a period.
+        """
         candidates = [self.paces[-1].turn] if self.paces else []
         if len(self.returns) > 2:
             first, last = self.returns[0][0], self.returns[-1][0]
@@ -219,44 +234,47 @@ class SettlingDetector:
         return (min(periods), max(periods)) if periods else (None, duration)
 
     def turns_steadily(self) -> bool:
-        """Tell whether the shape hardly changes in a turn at the pace of the last look."""
+        """Return True if the shape hardly changes in a turn at the last recorded rates."""
         last = self.paces[-1] if self.paces else None
         if last is None or last.turn is None:
             return False
-        return last.shape_speed * last.turn < LEAST_SWING * last.displacement
+        return last.shape_speed * last.turn < MIN_SWING * last.displacement
 
     def returned(self) -> Array:
-        """Return how far the newest shape is from those at the maxima before, relative to it."""
-        before = [nodes for _, nodes in islice(reversed(self.returns), 1, MOST_MAXIMA + 1)]
+        """Return the distances of the newest shape from those at earlier maxima, newest first.
+
+        Relative to the displacement, shape (k,) with k at most 8.
+        """
+        before = [nodes for _, nodes in islice(reversed(self.returns), 1, MAX_PERIOD_MAXIMA + 1)]
         if not before:
             return np.zeros(0)
         return self._changes(np.array(before), self.returns[-1][1])
 
     def _changes(self, earlier: Array, later: Array) -> Array:
-        """Return by how much shapes change from one return to another, relative to their size."""
+        """Return the distances of shapes from later ones, relative to the displacement."""
         return np.asarray(self.compare(earlier, later).distance / displacement(later))
 
     def _resting(self) -> Settled | None:
-        """Judge a shape that stops: its speed over the rate at which that falls is to come."""
-        late = [pace for pace in self.paces if pace.time >= 0.5 * self.paces[-1].time]
-        first, last = late[0], late[-1]
-        span, size = last.time - first.time, last.displacement
-        if span <= 0.0 or size == 0.0 or last.shape_speed >= first.shape_speed:
+        """Detect a shape that comes to rest: its speed over the decay rate of the speed remains."""
+        recent = [pace for pace in self.paces if pace.time >= 0.5 * self.paces[-1].time]
+        first, last = recent[0], recent[-1]
+        span, displacement = last.time - first.time, last.displacement
+        if span <= 0.0 or displacement == 0.0 or last.shape_speed >= first.shape_speed:
             return None
         fall = math.log(first.shape_speed / last.shape_speed) / span if last.shape_speed else 0.0
-        remaining = last.shape_speed / (fall * size) if fall else 0.0
+        remaining = last.shape_speed / (fall * displacement) if fall else 0.0
         if remaining > TOLERANCE_IN_RTOL * self.rtol:
             return None
         return Settled("still", last.time, remaining, None, None)
 
 
-def _still_to_come(
+def _remaining_change(
     changes: Sequence[float], spans: float, rtol: float, *, directed: bool = False
 ) -> float | None:
-    """Return the sum of all changes to come, each a repetition apart; None if it is too large.
+    """Return the sum of all future changes, each a recurrence apart; None if it is too large.
 
-    `spans` is the number of repetitions from the first to the last of `changes`; `directed` tells
-    that they add up, so that even small ones are no noise.
+    `spans` is the number of recurrences from the first to the last of `changes`; `directed` is True
+    if they add up, so that even small ones are no noise.
     """
     if max(changes) > TOLERANCE_IN_RTOL * rtol:
         return None
@@ -265,7 +283,7 @@ def _still_to_come(
     if changes[-1] == 0.0:
         return 0.0
     ratio = float((changes[-1] / changes[0]) ** (1.0 / spans))
-    if not ratio <= SLOWEST_DECAY:
+    if not ratio <= MAX_DECAY_RATIO:
         return None
     remaining = changes[-1] * ratio / (1.0 - ratio)
     return remaining if remaining <= TOLERANCE_IN_RTOL * rtol else None

@@ -1,9 +1,9 @@
-"""A run in the making: it can be advanced, watched, saved, stopped and taken up again.
+"""A run in progress, which can be advanced, observed, saved, stopped and resumed.
 
-`Simulation` owns the integrator's memory and what has been sampled so far. Samples lie at multiples
-of one interval. A run to a given time has the interval that gives the asked number of samples; a
-run to the settled state, whose length is not known, starts with a fine one and doubles it, dropping
-every other sample, whenever there are twice as many as asked.
+`Simulation` owns the state of the integrator and the samples so far. Samples lie at multiples of
+one interval. A run to a given time has the interval of the requested number of samples. An
+open-ended run starts with a short interval and doubles it, dropping every other sample, whenever
+there are twice as many samples as requested.
 """
 
 import math
@@ -16,10 +16,12 @@ import numpy as np
 from undula.analysis.observables.alignment import comparison
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs import stop_rule as rules
-from undula.analysis.runs.early_stop import ReachedState, StateDetector
+from undula.analysis.runs.early_stop import StateDetector
 from undula.analysis.runs.memory_needed import refuse_too_large
+from undula.analysis.runs.reached_state import ReachedState
 from undula.analysis.runs.sample_buffer import SampleBuffer, parts_of
-from undula.analysis.runs.settling import MotionRates, Settled, SettlingDetector
+from undula.analysis.runs.settled_motion import Settled
+from undula.analysis.runs.settling import MotionRates, SettlingDetector
 from undula.analysis.runs.stop_rule import Decision, Observation
 from undula.arrays import Array, State
 from undula.errors import InputError
@@ -32,15 +34,15 @@ from undula.numerics.integration.stepper_state import StepperState, start
 from undula.numerics.integration.system import RATES
 from undula.numerics.integration.time_loop import advance
 
-#: Steps and samples between two looks at the run: about a millisecond.
-MOST_STEPS, MOST_SAMPLES = 150, 256
-#: Inclination over the number of links that round-off makes of a straight start [rad].
-ROUND_OFF = 8.0 * float(np.finfo(float).eps)
-#: A run with this many samples a period needs no close-up.
-ENOUGH_A_PERIOD = 24.0
-#: The memory is kept so often, and at looks so many steps apart, so that the last periods can be
-#: sampled again more finely.
-KEPT_MARKS, MARKED_STEPS = 400, 450
+#: Largest numbers of steps and samples between two checks of the run: about a millisecond.
+MAX_STEPS_PER_CHECK, MAX_SAMPLES_PER_CHECK = 150, 256
+#: Largest inclination, per link, that round-off makes of a straight start [rad].
+ROUND_OFF_INCLINATION = 8.0 * float(np.finfo(float).eps)
+#: Number of samples in a period with which a run needs no close-up.
+SUFFICIENT_SAMPLES_PER_PERIOD = 24.0
+#: Number of stored integrator states, and least number of steps between two of them: from these
+#: marks the last periods are sampled again at finer intervals.
+STORED_MARKS, STEPS_PER_MARK = 400, 450
 
 
 @dataclass
@@ -49,27 +51,27 @@ class Simulation:
 
     Attributes
     ----------
-    model, schedule
-        What runs, and how.
+    model, schedule, ending, cause
+        As in `undula.analysis.runs.run.Run`.
     memory : StepperState
-        The integrator's.
+        State of the integrator.
     interval : float
         Time between samples [T].
     rows : list of ndarray
         Samples so far, shape (m, n + RATES) together: unknowns in the lab frame, then the integrals
-        of the turning rate, of the active power and of the dissipation.
-    recent : SampleBuffer
-        Samples at finer intervals, of the end so far.
-    arrival : ReachedState or None
-        The state that a run to the solved one was left for.
-    tight_from : float or None
-        Time from which on its steps are more exact than was asked for, see `Tighten` [T].
-    sampled : int
-        Number of samples so far.
+        of the rate of rotation, of the active power and of the dissipation.
     observation : Observation or None
-        How the motion that it has settled to is observed; None before.
+        Observation of the settled motion; None before the motion has settled.
+    arrival : ReachedState or None
+        Stable state that the run has reached and ended for.
+    tight_from : float or None
+        Time of a reduction of the tolerance, see `Tighten` [T].
     observe_until : float
-        Time until which a settled motion is observed at least [T].
+        Earliest end of the observation [T].
+    recent : SampleBuffer
+        Last samples at finer intervals.
+    marks : deque of StepperState
+        Earlier states of the integrator, in order of time.
     """
 
     model: Model
@@ -85,11 +87,11 @@ class Simulation:
     cause: str = ""
     recent: SampleBuffer = field(default_factory=SampleBuffer)
     sampled: int = field(init=False)
-    marks: deque[StepperState] = field(default_factory=lambda: deque(maxlen=KEPT_MARKS))
+    marks: deque[StepperState] = field(default_factory=lambda: deque(maxlen=STORED_MARKS))
 
     def __post_init__(self) -> None:
         """Count the samples, and begin to observe."""
-        self.sampled = sum(map(len, self.rows))  # asked for several times a look
+        self.sampled = sum(map(len, self.rows))  # used several times in a check
         self._observe_afresh()
 
     def _observe_afresh(self) -> None:
@@ -97,7 +99,7 @@ class Simulation:
         self.options = self.schedule.options(self.model)
         first = self.rows[0][0] if self.rows else self.memory.differences[0]
         tangent_distance = self.model.tangent_distance(self.model.positions(first[:-RATES]))
-        if tangent_distance <= ROUND_OFF * self.model.links:
+        if tangent_distance <= ROUND_OFF_INCLINATION * self.model.links:
             tangent_distance = 0.0
         compare = comparison(axisymmetric=self.model.axisymmetric)
         self.detector = SettlingDetector(self.schedule.rtol, tangent_distance, compare)
@@ -106,7 +108,7 @@ class Simulation:
 
     @classmethod
     def begin(cls, model: Model, x: State, schedule: Schedule) -> Self:
-        """Return the run of `model` from the state x at time 0."""
+        """Return a new run from the state x (model.size,) at time 0; raise InputError if wrong."""
         refuse_too_large(model, schedule)
         x = numbers(x, "the start")
         if x.shape != (model.size,):
@@ -123,12 +125,12 @@ class Simulation:
 
     @property
     def settled(self) -> Settled | None:
-        """The motion that it has settled to; None before."""
+        """The settled motion; None before the motion has settled."""
         return None if self.observation is None else self.observation.settled
 
     @property
     def time(self) -> float:
-        """Time that the samples have reached [T]."""
+        """Time of the last sample [T]."""
         return max(0, self.sampled - 1) * self.interval
 
     @property
@@ -145,9 +147,9 @@ class Simulation:
         return self.rows[0]
 
     def advance(self) -> bool:
-        """Go on for some milliseconds; return whether there is more to do."""
+        """Integrate for some milliseconds; return False at the end of the run."""
         last = math.ceil(self.schedule.end / self.interval - 1e-9)
-        ahead = min(self.sampled + MOST_SAMPLES, self._enough(), last + 1)
+        ahead = min(self.sampled + MAX_SAMPLES_PER_CHECK, self._enough(), last + 1)
         if ahead <= self.sampled:
             self.apply(rules.at_the_end(self.schedule, self.observation))
             return False
@@ -155,7 +157,7 @@ class Simulation:
         noted = self._parts()
         parts = max(1, noted)
         fine = np.arange(self._first(parts), (ahead - 1) * parts + 1)
-        most = self.state_detector.steps if self.schedule.until == "solved" else MOST_STEPS
+        most = self.state_detector.steps if self.schedule.until == "solved" else MAX_STEPS_PER_CHECK
         states, sections = np.empty((fine.size, width)), np.empty((most, 1 + width))
         code, filled, found = advance(
             self.model.system,
@@ -166,7 +168,7 @@ class Simulation:
             sections,
             most,
         )
-        # A look may end long before all times are reached: what is kept is not to hold the rest.
+        # A check may end long before all times are reached: a copy does not keep the rest alive.
         states = states if filled == fine.size else states[:filled].copy()
         self._keep(states if parts == 1 else states[-fine[0] % parts :: parts].copy())
         if noted:
@@ -179,7 +181,7 @@ class Simulation:
         if status not in (Status.DONE, Status.PAUSED):
             self.ending, self.cause = Ending.FAILED, status.advice
             return False
-        if self.memory.count[names.STEPS] >= self.marks[-1].count[names.STEPS] + MARKED_STEPS:
+        if self.memory.count[names.STEPS] >= self.marks[-1].count[names.STEPS] + STEPS_PER_MARK:
             self.marks.append(copied(self.memory))
         shapes = self._nodes(sections[:found, 1:]) if found else ()
         self.detector.note(
@@ -206,14 +208,14 @@ class Simulation:
         self.sampled += len(rows)
 
     def _parts(self) -> int:
-        """Return in how many parts an interval is sampled for the close-up; 0 if for none."""
+        """Return the number of parts of an interval for the close-up; 0 without a close-up."""
         fast, _ = self.detector.periods(self.time)
         if not self.schedule.open_ended or fast is None or self.detector.turns_steadily():
             return 0
         return parts_of(self.interval, fast, self.recent.interval)
 
     def _first(self, parts: int) -> int:
-        """Return which multiple of a part of the interval is sampled next."""
+        """Return the next multiple of a part of the interval that is sampled."""
         following = max(0, self.sampled - 1) * parts + min(1, self.sampled)
         if parts == 1:
             return following
@@ -221,14 +223,14 @@ class Simulation:
         noted = self.recent.following(interval)
         if noted is not None and noted >= following:
             return noted
-        # Of what lies behind the last step nothing is known any more.
-        known = math.floor(float(real[names.TIME] - real[names.STEP]) / interval) + 1
-        return max(following, min(known, self.sampled * parts))
+        # Times before the last step can no longer be sampled.
+        available = math.floor(float(real[names.TIME] - real[names.STEP]) / interval) + 1
+        return max(following, min(available, self.sampled * parts))
 
     def _enough(self) -> int:
-        """Return how many samples are enough at a look: of what has settled, those as shown."""
+        """Return the largest number of samples at the next check, limited by the observation."""
         if not self.schedule.open_ended or self.observation is None:
-            return self.sampled + MOST_SAMPLES
+            return self.sampled + MAX_SAMPLES_PER_CHECK
         until = max(self.observation.until, self.observe_until)
         return max(self.sampled, math.ceil(until / self.interval - 1e-9)) + 1
 
@@ -253,17 +255,17 @@ class Simulation:
                 return rules.at_a_state(self.arrival)
         settled = self.detector.settled()
         if settled is None:
-            self.observation = None  # a motion that leaves again had not settled
+            self.observation = None  # a motion that drifts away again had not settled
         elif self.observation is None:
             self.observation = rules.observation_of(settled, self.schedule)
         return rules.when_settled(self.time, self.observation, self.observe_until)
 
     def _tighten(self, rtol: float) -> None:
-        """Go on with more exact steps, and begin anew to observe."""
+        """Continue with more exact steps, and begin to observe afresh."""
         self.schedule = replace(self.schedule, rtol=rtol)
         self.tight_from, self.observation, self.observe_until = self.time, None, 0.0
         self.ending = Ending.RUNNING
-        self.marks.clear()  # whose steps were others
+        self.marks.clear()  # their steps had another tolerance
         self._observe_afresh()
 
     def _pace(self) -> MotionRates:
@@ -280,16 +282,16 @@ class Simulation:
 
     @property
     def earliest_mark(self) -> float:
-        """Time from which on the run can be sampled again [T]."""
+        """Earliest time from which the run can be sampled again [T]."""
         return float(self.marks[0].real[names.TIME])
 
     def mark_before(self, time: float) -> StepperState:
-        """Return the last mark at or before a time, from the earliest mark to the end [T]."""
+        """Return the last mark at or before a time [T] between the earliest mark and the end."""
         earlier = (mark for mark in reversed(self.marks) if mark.real[names.TIME] <= time)
-        found: StepperState = next(earlier)
-        return found
+        last: StepperState = next(earlier)
+        return last
 
 
 def copied(memory: StepperState) -> StepperState:
-    """Return a memory that stays as it is when the run goes on."""
+    """Return a copy of a state of the integrator."""
     return StepperState(*(array.copy() for array in memory))

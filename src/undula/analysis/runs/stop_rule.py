@@ -1,4 +1,4 @@
-"""When a run ends: one table of rules, each a pure function from what is known to a decision.
+"""Rules for the end of a run, each a pure function from the state of the run to a decision.
 
 | rule | question | decisions |
 | --- | --- | --- |
@@ -27,13 +27,14 @@ from undula.analysis.regimes.names import plane_change
 from undula.analysis.regimes.recurrence import MAX_RECURRENCE_DISTANCE
 from undula.analysis.regimes.trends import Halves, out_of_plane
 from undula.analysis.run_settings import Ending, Schedule
-from undula.analysis.runs.early_stop import ReachedState
-from undula.analysis.runs.settling import NOISE_IN_RTOL, Settled
+from undula.analysis.runs.reached_state import ReachedState
+from undula.analysis.runs.settled_motion import Settled
+from undula.analysis.runs.settling import NOISE_IN_RTOL
 from undula.arrays import Array
 
-#: Beats or turns for which a settled motion is observed; and one whose changes are no more than
-#: errors of the integration. A motion that still relaxes slowly, as a beat into its plane, gets a
-#: wrong name from a shorter window (docs/notes/points.md).
+#: Number of beats or turns for which a settled motion is observed, and one with changes as small as
+#: errors of the integration. A motion that relaxes slowly, such as a beat towards its plane, is
+#: misclassified in a shorter window (docs/notes/points.md).
 OBSERVED_CYCLES, OBSERVED_CYCLES_AT_NOISE = 12, 6
 #: Beats in a trial window, from which planar flapping alone is accepted, and number of trials.
 TRIAL_CYCLES, TRIAL_WINDOWS = 3, 6
@@ -48,21 +49,21 @@ TIGHT_RTOL = 1e-6
 
 @dataclass(frozen=True)
 class Continue:
-    """Go on as before."""
+    """Decision to continue unchanged."""
 
 
 @dataclass(frozen=True)
 class Observation:
-    """A settled motion, and how long it is observed.
+    """A settled motion and the length of its observation.
 
     Attributes
     ----------
     settled : Settled
-        The motion, `since` when it is observed.
+        The motion, with the start of the observation `since`.
     cycles : int
         Number of beats or turns to observe.
     trial_windows : int
-        Number of short trial windows left; in each planar flapping alone is accepted.
+        Number of short trial windows left, in which planar flapping is the only accepted verdict.
     """
 
     settled: Settled
@@ -79,26 +80,26 @@ class Observation:
         return self.settled.since + self.cycles * (cycle or 0.0)
 
     def from_at_most(self, time: float) -> Self:
-        """Return the observation with a motion that has settled by a time [T] at the latest."""
+        """Return the observation with a start at a time [T] at the latest."""
         settled = replace(self.settled, since=min(self.settled.since, time))
         return replace(self, settled=settled)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the observation under the keys of an answer."""
+        """Return the observation in plain JSON types."""
         observed = {"cycles": self.cycles, "brief": self.trial_windows}
         return asdict(self.settled) | observed
 
 
 @dataclass(frozen=True)
 class Observe:
-    """Go on, and observe the settled motion for longer.
+    """Decision to continue and observe the settled motion for longer.
 
     Attributes
     ----------
     observation : Observation
-        What to observe.
+        The next observation.
     until : float
-        Time until which at least [T].
+        Earliest end of the observation [T].
     """
 
     observation: Observation
@@ -107,14 +108,25 @@ class Observe:
 
 @dataclass(frozen=True)
 class Tighten:
-    """Go on with steps of another relative tolerance, and observe afresh."""
+    """Decision to continue with another relative tolerance, and observe afresh.
+
+    Attributes
+    ----------
+    rtol : float
+        Relative error tolerance of a step.
+    """
 
     rtol: float
 
 
 @dataclass(frozen=True)
 class Stop:
-    """End the run."""
+    """Decision to end the run.
+
+    Attributes
+    ----------
+    ending : Ending
+    """
 
     ending: Ending
 
@@ -123,7 +135,7 @@ Decision = Continue | Observe | Tighten | Stop
 
 
 def observation_of(settled: Settled, schedule: Schedule) -> Observation:
-    """Return how a motion that has just settled is observed first."""
+    """Return the first observation of a motion that has just settled."""
     if settled.kind != "periodic":
         return Observation(settled)
     if schedule.until == "solved":
@@ -145,7 +157,17 @@ def at_a_state(reached: ReachedState | None) -> Continue | Stop:
 
 
 def when_settled(time: float, observation: Observation | None, until: float) -> Continue | Stop:
-    """Stop a run that has settled and been observed, by itself and until a time at least [T]."""
+    """Stop a run that has settled and been observed.
+
+    Parameters
+    ----------
+    time
+        Time of the last sample [T].
+    observation
+        Observation of the settled motion; None before.
+    until
+        Earliest end of the observation [T].
+    """
     if observation is not None and time >= max(observation.until, until):
         return Stop(Ending.SETTLED)
     return Continue()
@@ -158,22 +180,23 @@ def when_observed(
     window: Motion,
     classify: Callable[[], tuple[str, float | None]],
 ) -> Decision:
-    """Stop a run that shows enough to be classified, or go on as long as that takes.
+    """Stop a run that shows enough to be classified, or continue for the time that it lacks.
 
     Parameters
     ----------
     schedule
-        That of the run.
+        Schedule of the run.
     time
-        Time that the run has reached [T].
+        Time of the last sample [T].
     observation
-        What was observed.
+        The finished observation.
     window
         The motion since it settled.
     classify
-        Returns the verdict's name and the time that it lacks [T], if any; called if needed.
+        Returns the name of the verdict and the time that the run lacks [T] or None; called only if
+        needed.
     """
-    # A motion that leaves its plane has no name yet, which takes far less time to see.
+    # A motion that leaves its plane is undecided, which takes far less time to detect.
     if observation.trial_windows and (plane_change(window.nodes) or classify()[0] != TRIAL_VERDICT):
         if observation.trial_windows == 1 and schedule.rtol > TIGHT_RTOL:
             return Tighten(TIGHT_RTOL)
@@ -187,33 +210,42 @@ def when_observed(
 def when_irregular(
     schedule: Schedule, observation: Observation | None, returned: Array
 ) -> Continue | Tighten | Stop:
-    """Stop a run whose shape does not come back; exponents decide whether it stays stopped.
+    """Stop a run whose shape does not recur; Lyapunov exponents decide if it is continued.
 
     Parameters
     ----------
     schedule, observation
-        Those of the run.
+        Of the run.
     returned
-        Distances of the newest shape from those at the maxima before, shape ``(k,)``.
+        Distances of the newest shape from those at earlier maxima, relative to the displacement,
+        shape ``(k,)``.
     """
     if not schedule.open_ended or observation is not None:
         return Continue()
     if returned.min(initial=np.inf) <= MAX_RECURRENCE_DISTANCE:
-        return Continue()  # it recurs, nearly, and takes its time to settle
+        return Continue()  # it recurs nearly, and settles slowly
     if schedule.until == "solved" and schedule.rtol > TIGHT_RTOL:
         return Tighten(TIGHT_RTOL)
     return Stop(Ending.IRREGULAR)
 
 
 def when_cut_short(seconds: float, budget: float, *, interrupted: bool) -> Continue | Stop:
-    """Stop a run that the user has interrupted or that has spent its budget of seconds."""
+    """Stop a run that the user has interrupted or that has exceeded its budget.
+
+    Parameters
+    ----------
+    seconds, budget
+        Elapsed and largest time [s].
+    interrupted
+        True after an interruption by the user.
+    """
     if interrupted:
         return Stop(Ending.INTERRUPTED)
     return Stop(Ending.OUT_OF_TIME) if seconds > budget else Continue()
 
 
 def _next_window(observation: Observation, window: Motion) -> Observation:
-    """Return the next window of a motion that the last one did not suffice for."""
+    """Return the next window of a motion that the last one did not classify."""
     if observation.trial_windows == 1:
         return replace(observation, cycles=OBSERVED_CYCLES, trial_windows=0)
     settled = observation.settled

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from undula.analysis.observables.period_statistics import oversampled, over_period
+from undula.analysis.observables.period_statistics import over_period, oversampled
 from undula.analysis.observables.shapes import Range, mean_position, tip_height, transverse
 from undula.analysis.states.state import State
 from undula.arrays import Array, ComplexArray, Shapes

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from undula.analysis.observables.period_statistics import oversampled, over_period
+from undula.analysis.observables.period_statistics import over_period, oversampled
 from undula.analysis.observables.shapes import Range, envelope, tip_height
 from undula.analysis.states.state import FixedShape, State, by_falling_real_part
 from undula.arrays import Array, ComplexArray, Shapes

@@ -5,7 +5,13 @@ from dataclasses import dataclass, field
 
 from undula.analysis.runs.classify_run import Exponents
 from undula.analysis.runs.dataset import dataset_of
-from undula.analysis.runs.integrate import CUT_SHORT, STOPPED, Progress, carry_on, with_exponents
+from undula.analysis.runs.integrate import (
+    CUT_SHORT_ENDINGS,
+    CUT_SHORT_REASONS,
+    Progress,
+    carry_on,
+    with_exponents,
+)
 from undula.analysis.runs.run import Run
 from undula.app.commands.run_job import Job
 from undula.errors import InputError
@@ -56,11 +62,11 @@ def compute(job: Job, budget: float, *, lyapunov: bool) -> Computed:
         store(job, judged)  # exponents may take long, and something may end that
         wanted = lyapunov or (judged.lyapunov is None and judged.verdict.late is not None)
         run, stopped = judged, False
-        if wanted and simulation.ending not in CUT_SHORT:
+        if wanted and simulation.ending not in CUT_SHORT_ENDINGS:
             exponents = Exponents.ALWAYS if lyapunov else Exponents.IF_IRREGULAR
             left = budget - (time.monotonic() - begun)
             run = with_exponents(simulation, exponents, budget=left, progress=watcher)
-            stopped = run.without_lyapunov in STOPPED
+            stopped = run.without_lyapunov in CUT_SHORT_REASONS
             store(job, run)
     return Computed(time.monotonic() - begun, run.without_lyapunov if stopped else "")
 
