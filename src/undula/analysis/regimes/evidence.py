@@ -119,7 +119,7 @@ class Evidence:
     @cached_property
     def frequency(self) -> Frequency | None:
         """Positive frequency of the motion, for a spinning shape that of its rotation, or None."""
-        if self.spins:
+        if self.spinning:
             return turning_frequency(self.time, self.rotation_angle)
         return whole_motion_frequency(self.time, self.nodes)
 
@@ -161,7 +161,7 @@ class Evidence:
         return self.shape_change <= MAX_STEADY_CHANGE
 
     @property
-    def spins(self) -> bool:
+    def spinning(self) -> bool:
         """True if the shape changes by rotation alone, and by at least one turn."""
         axisymmetric = self.compare is aligned_distance
         return axisymmetric and self.steady and abs(self.turns) >= MIN_TURNS

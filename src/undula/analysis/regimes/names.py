@@ -85,7 +85,7 @@ def name_spinning(window: LateWindow) -> Name | None:
         None if the motion is not spinning.
     """
     seen = window.seen
-    if not seen.spins:
+    if not seen.spinning:
         return None
     change = shape_change(window.nodes)
     grows = change.grows(MAX_STEADY_FACTOR, MIN_VISIBLE_SHARE * MAX_STEADY_CHANGE)
