@@ -12,12 +12,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import undula.analysis.observables.shapes as observables
     import undula.views as views
-    from undula.analysis.linear.stability import (
-        critical_curve,
-        growth_curve,
-        onset,
-        spectrum,
-    )
+    from undula.analysis.linear.spectrum import spectrum
+    from undula.analysis.linear.stability import critical_curve, growth_curve, onset
     from undula.analysis.maps.basins import basins
     from undula.analysis.maps.contradictions import contradictions
     from undula.analysis.maps.stability_along_force import stability_along_force
@@ -98,7 +94,7 @@ _HOMES = {
     "planar": "undula.models.initial_states",
     "stability_boundaries": "undula.analysis.maps.stability_boundaries",
     "stability_along_force": "undula.analysis.maps.stability_along_force",
-    "spectrum": "undula.analysis.linear.stability",
+    "spectrum": "undula.analysis.linear.spectrum",
     "straight": "undula.models.initial_states",
     "threshold": "undula.analysis.solvers.thresholds",
     "threshold_curve": "undula.analysis.solvers.thresholds",

@@ -21,6 +21,7 @@ def changed(model: Model, parameter: str, value: float) -> Model:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     parameter : str
         "load." and a number of the load, or "model." and a number of the model.
     value : float
@@ -57,6 +58,7 @@ def value_of(model: Model, parameter: str) -> float:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     parameter : str
         Name as in `changed`.
 
@@ -86,6 +88,7 @@ def neighbours(model: Model, parameter: str, value: float) -> tuple[Model, Model
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     parameter : str
         Name as in `changed`.
     value : float

@@ -121,6 +121,7 @@ class Schedule:
         Parameters
         ----------
         model : Model
+            Model of the filament or chain.
 
         Returns
         -------

@@ -9,7 +9,8 @@ import undula as un
 from cases import ALL_LOADS, every_form, filament
 from refusal import complaint
 from undula.analysis.linear.results import Method
-from undula.analysis.linear.stability import critical_curve, growth_curve, onset, spectrum
+from undula.analysis.linear.spectrum import spectrum
+from undula.analysis.linear.stability import critical_curve, growth_curve, onset
 from undula.analysis.observables.linear_mode import linear_motion
 from undula.models.filament import Filament
 from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad

@@ -22,8 +22,8 @@ from independent import (
 from undula.analysis.linear.onset import find_onset
 from undula.analysis.linear.pencils import AssumedModes, Polynomials, linearised
 from undula.analysis.linear.results import Method, Onset
+from undula.analysis.linear.spectrum import spectrum
 from undula.analysis.linear.stability import onset as onset_of
-from undula.analysis.linear.stability import spectrum
 from undula.arrays import ComplexArray
 from undula.models.filament import Filament
 from undula.models.initial_states import leading_mode

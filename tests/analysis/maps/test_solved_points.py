@@ -9,7 +9,7 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from undula.analysis.linear.stability import spectrum
+from undula.analysis.linear.spectrum import spectrum
 from undula.analysis.maps.stability_along_force import solved_record, stability_along_force
 from undula.analysis.maps.states_at_forces import states_along
 from undula.analysis.solvers.thresholds import threshold

@@ -63,9 +63,11 @@ def models_along(model: Model, parameter: str, values: Array) -> list[Model]:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     parameter : str
         Name of any parameter but "load.force".
     values : ndarray of shape (k,)
+        Values of the parameter, in its unit.
 
     Returns
     -------

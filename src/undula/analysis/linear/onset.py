@@ -6,7 +6,7 @@ to equal the number that the earlier crossings account for. If the first crossin
 depends on the resolution, the sign change of the leading rate is bracketed and bisected instead.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import takewhile
 
 import numpy as np
@@ -14,18 +14,18 @@ from scipy.optimize import brentq
 
 from undula.analysis.linear.pencils import Linearisation
 from undula.analysis.linear.results import Crossing, Onset
-from undula.arrays import ComplexArray
-from undula.numerics.linalg.bialternate import coalescences, crossings
-from undula.numerics.linalg.critical_points import CriticalPair, refine_coalescence, refine_crossing
+from undula.analysis.linear.ringing import Ringing, measured_ringing, ringing_force
+from undula.analysis.linear.spectrum import leading_eigenvalue
+from undula.numerics.linalg.bialternate import crossings
+from undula.numerics.linalg.critical_points import CriticalPair, refine_crossing
 from undula.numerics.linalg.pencil import Pencil, eigenvalues
 
-# Numbers of unknowns of the small pencils for crossings, tried in turn, and for coalescences.
-_SMALL_PENCIL_SIZES, _COALESCENCE_PENCIL_SIZE = (10, 16, 24), 8
+# Numbers of unknowns of the small pencils, tried in turn.
+_SMALL_PENCIL_SIZES = (10, 16, 24)
 # Relative error of the thresholds below which the resolution is not refined further.
 _RELATIVE_TOLERANCE = 1e-12
-# Largest rate on the axis, relative to the frequency or to the slowest decay without a force; and
-# largest relative gap of a coalescence, which the square root of round-off splits.
-_MAX_RATE_ON_AXIS, _MAX_COALESCENCE_GAP = 1e-7, 1e-4
+# Largest rate on the axis, relative to the frequency or to the slowest decay without a force.
+_MAX_RATE_ON_AXIS = 1e-7
 # Largest relative error of a threshold or eigenvalue of an approximation that is reported.
 _MAX_RELATIVE_ERROR = 0.01
 # Largest force that is searched without a candidate [B/L^2].
@@ -38,6 +38,7 @@ def find_onset(linearisation: Linearisation, later: int) -> Onset:
     Parameters
     ----------
     linearisation : Linearisation
+        Linearised straight state.
     later : int
         Number of crossings to compute after the first, at least 0.
 
@@ -60,6 +61,7 @@ def first_pair(linearisation: Linearisation) -> CriticalPair | None:
     Parameters
     ----------
     linearisation : Linearisation
+        Linearised straight state.
 
     Returns
     -------
@@ -68,48 +70,6 @@ def first_pair(linearisation: Linearisation) -> CriticalPair | None:
     """
     pairs = _first_pairs(linearisation, 1) or _bracketed(linearisation)[1]
     return pairs[0] if pairs else None
-
-
-def leading(pencil: Pencil, force: float) -> complex:
-    """Return the leading eigenvalue under a force.
-
-    Parameters
-    ----------
-    pencil : Pencil
-    force : float
-        Total follower force [B/L^2].
-
-    Returns
-    -------
-    complex
-        [1/T]; of a pair, the member with positive imaginary part.
-    """
-    return complex(eigenvalues(pencil.stiffness(force), pencil.mass)[0])
-
-
-@dataclass(frozen=True)
-class _Ringing:
-    """Force at which the leading eigenvalue becomes complex.
-
-    Either two real eigenvalues coalesce at `sigma`, or a pair overtakes the leading real eigenvalue
-    in the bracket.
-    """
-
-    force: float
-    sigma: float | None = None
-    bracket: tuple[float, float] = (0.0, 0.0)
-
-    def on(self, pencil: Pencil) -> tuple[float, float]:
-        """Return the force on a pencil, and its round-off; NaN if this pencil has no such force."""
-        if self.sigma is not None:
-            refined = refine_coalescence(pencil, self.force, self.sigma)
-            return (refined.p, refined.round_off) if refined else (np.nan, np.nan)
-        ahead = [_lead_of_pairs(pencil, force) for force in self.bracket]
-        if not ahead[0] < 0.0 < ahead[1]:
-            return np.nan, np.nan
-        round_off = 1e-13 * self.force
-        crossing = brentq(lambda p: _lead_of_pairs(pencil, p), *self.bracket, xtol=round_off)
-        return float(crossing), round_off
 
 
 def _first_pairs(linearisation: Linearisation, count: int) -> list[CriticalPair]:
@@ -171,8 +131,10 @@ def _accurate_at(linearisation: Linearisation | None, force: float) -> Linearisa
         # The links are the model, not an approximation of it.
         if compared is None or linearisation.method == "discrete":
             return linearisation
-        own, other = (leading(item.pencil, force) for item in (linearisation, compared[0]))
-        slow = max(abs(own), abs(leading(linearisation.pencil, 0.0)))
+        own, other = (
+            leading_eigenvalue(item.pencil, force) for item in (linearisation, compared[0])
+        )
+        slow = max(abs(own), abs(leading_eigenvalue(linearisation.pencil, 0.0)))
         if compared[1] * abs(own - other) < _MAX_RELATIVE_ERROR * slow:
             return linearisation
         linearisation = linearisation.finer()
@@ -181,62 +143,20 @@ def _accurate_at(linearisation: Linearisation | None, force: float) -> Linearisa
 
 def _growth(pencil: Pencil, force: float) -> float:
     """Return the leading rate, less the largest rate that counts as 0."""
-    return leading(pencil, force).real - _MAX_RATE_ON_AXIS * abs(leading(pencil, 0.0))
+    return leading_eigenvalue(pencil, force).real - _MAX_RATE_ON_AXIS * abs(
+        leading_eigenvalue(pencil, 0.0)
+    )
 
 
 def _bisected(pencil: Pencil, stable: float, unstable: float) -> list[CriticalPair]:
     force = brentq(lambda p: _growth(pencil, p), stable, unstable)
-    pair = refine_crossing(pencil, force, leading(pencil, force).imag)
+    pair = refine_crossing(pencil, force, leading_eigenvalue(pencil, force).imag)
     return [pair] if pair else []
-
-
-def _ringing_force(linearisation: Linearisation, below: float) -> _Ringing | None:
-    """Return the first force up to a limit at which the leading eigenvalue becomes complex."""
-    pencil = linearisation.pencil
-    candidates = [
-        (p, sigma)
-        for p, sigma in coalescences(linearisation.coarse(_COALESCENCE_PENCIL_SIZE))
-        if p < below
-    ]
-    forces = [0.0, *(p for p, _ in candidates), below]
-    last = 0.0
-    for k in range(len(forces) - 1):
-        middle = 0.5 * (forces[k] + forces[k + 1])
-        if leading(pencil, middle).imag > 0.0:
-            return _as_ringing(pencil, candidates[k - 1] if k else None, (last, middle))
-        last = middle
-    if leading(pencil, below).imag > 0.0:
-        # A margin of one per cent, as the crossing of another resolution differs.
-        return _as_ringing(pencil, None, (last, 1.01 * below))
-    return None
-
-
-def _as_ringing(
-    pencil: Pencil, coalescence: tuple[float, float] | None, bracket: tuple[float, float]
-) -> _Ringing:
-    """Return the coalescence in a bracket if it is one of the leading pair, else the bracket."""
-    if coalescence is not None:
-        refined = refine_coalescence(pencil, *coalescence)
-        if refined is not None:
-            rate = leading(pencil, refined.p).real
-            if abs(rate - refined.sigma) < _MAX_COALESCENCE_GAP * abs(rate):
-                return _Ringing(refined.p, sigma=refined.sigma)
-    return _Ringing(bracket[1], bracket=bracket)
-
-
-def _lead_of_pairs(pencil: Pencil, force: float) -> float:
-    """Return the rate of the leading pair minus that of the leading real eigenvalue."""
-    values = eigenvalues(pencil.stiffness(force), pencil.mass)
-    return _first_rate(values[values.imag > 0.0]) - _first_rate(values[values.imag == 0.0])
-
-
-def _first_rate(values: ComplexArray) -> float:
-    return float(values[0].real) if values.size else -np.inf
 
 
 def _resolved(linearisation: Linearisation, pairs: list[CriticalPair], searched_to: float) -> Onset:
     """Return the onset with these crossings, on a linearisation refined until it has converged."""
-    ringing = _ringing_force(linearisation, pairs[0].p if pairs else searched_to)
+    ringing = ringing_force(linearisation, pairs[0].p if pairs else searched_to)
     onset = _measured(linearisation, pairs, ringing, searched_to)
     while not _settled(onset) and (finer := linearisation.finer()) is not None:
         refined = [refine_crossing(finer.pencil, pair.p, pair.omega) for pair in pairs]
@@ -267,14 +187,14 @@ def _is_accurate(crossing: Crossing) -> bool:
 def _measured(
     linearisation: Linearisation,
     pairs: list[CriticalPair],
-    ringing: _Ringing | None,
+    ringing: Ringing | None,
     searched_to: float,
 ) -> Onset:
     """Return the onset on a linearisation, with errors by comparison with its companion."""
     other, factor = linearisation.companion() or (None, 0.0)
     compared = other.pencil if other else None
     measured = [_crossing(compared, factor, pair) for pair in pairs]
-    force, error = _ringing_measured(linearisation.pencil, compared, factor, ringing)
+    force, error = measured_ringing(linearisation.pencil, compared, factor, ringing)
     return Onset(
         hopf=measured[0] if measured else None,
         oscillatory_force=force,
@@ -308,22 +228,6 @@ def _differences(compared: Pencil, pair: CriticalPair) -> tuple[float, float]:
         distance = abs(nearest - 1j * pair.omega)
         return distance / abs(pair.slope), distance
     return abs(other.p - pair.p), abs(other.omega - pair.omega)
-
-
-def _ringing_measured(
-    pencil: Pencil, compared: Pencil | None, factor: float, ringing: _Ringing | None
-) -> tuple[float | None, float | None]:
-    if ringing is None:
-        return None, None
-    force, round_off = ringing.on(pencil)
-    if not np.isfinite(force):
-        return None, None
-    if compared is None:
-        return force, round_off
-    other = ringing.on(compared)[0]
-    low, high = ringing.bracket
-    difference = abs(force - other) if np.isfinite(other) else high - low
-    return force, factor * difference + round_off
 
 
 def _settled(onset: Onset) -> bool:

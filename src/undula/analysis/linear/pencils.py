@@ -223,6 +223,7 @@ def linearised(model: Model, method: Method | None = None) -> Linearisation:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     method : {"spectral", "modes", "discrete"}, optional
         By default "spectral" if the model has a continuous limit, else "discrete".
 

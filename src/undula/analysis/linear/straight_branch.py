@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from undula.analysis.linear.stability import method_for_all, spectrum
+from undula.analysis.linear.spectrum import spectrum
+from undula.analysis.linear.stability import method_for_all
 from undula.analysis.parameters import changed, value_of
 from undula.analysis.states.along_parameter import model_along
 from undula.arrays import Array
@@ -48,6 +49,7 @@ def follow_straight(model: Model, parameter: str, start: float, to: float) -> St
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     parameter : str
         Name of a continuous parameter, such as "load.force".
     start, to : float

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.linear.results import Spectrum
-from undula.analysis.linear.stability import spectrum
+from undula.analysis.linear.spectrum import spectrum
 from undula.analysis.maps.states_at_forces import states_along
 from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.shapes import Range

@@ -112,12 +112,12 @@ def fit(
     ----------
     row, lower
         The inner products of harmonics, shape ``(3, 2 K + 1)``, and the factor of the first row.
-    fitted, left
+    fitted, delayed
         The inner products of the signal with harmonics, without and with a factor t, shape
         ``(2 K + 1,)``.
-    moved
+    rates
         Receives the coefficients of the time derivative of the fit.
-    seen, undone
+    product, compensated
         Scratch.
     """
     top, pull, steepness = fitted.shape[0], 0.0, 0.0

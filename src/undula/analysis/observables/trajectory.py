@@ -40,7 +40,9 @@ class Observed:
         Parameters
         ----------
         model : Model
+            Model of the filament or chain.
         unknowns : ndarray, shape (m, n)
+            Unknowns in the lab frame.
 
         Returns
         -------
@@ -63,7 +65,13 @@ class Observed:
         return self._all.dissipation
 
     def part(self, chosen: slice) -> Self:
-        """Return the energies and powers of a slice of the samples."""
+        """Return the energies and powers of some of the samples.
+
+        Parameters
+        ----------
+        chosen : slice
+            Indices of the samples.
+        """
         return type(self)(
             self.model,
             self.unknowns[chosen],
@@ -104,6 +112,7 @@ class Motion:
         Parameters
         ----------
         model : Model
+            Model of the filament or chain.
         time : ndarray, shape (m,)
             Equally spaced times [T].
         states : ndarray, shape (m, n + RATES)

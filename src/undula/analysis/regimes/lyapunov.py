@@ -117,6 +117,7 @@ def lyapunov(
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     state : ndarray, shape (model.size,) or (n,)
         A state on the attractor, such as the last one of a run, or the unknowns of the integrator
         there, which include the turns of wound-up joints.

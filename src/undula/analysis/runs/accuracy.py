@@ -86,6 +86,7 @@ def errors_of(motion: Motion) -> Errors:
     Parameters
     ----------
     motion : Motion
+        Trajectory of the run.
     """
     return Errors(power_balance_error(motion), length_error(motion))
 
@@ -98,6 +99,7 @@ def health_of(
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     motion : Motion
         Trajectory of the whole run.
     errors : Errors
@@ -140,6 +142,7 @@ def power_balance_error(motion: Motion) -> float:
     Parameters
     ----------
     motion : Motion
+        Trajectory of the run.
 
     Returns
     -------
@@ -158,6 +161,7 @@ def length_error(motion: Motion) -> float:
     Parameters
     ----------
     motion : Motion
+        Trajectory of the run.
 
     Returns
     -------
@@ -179,6 +183,7 @@ def folded(motion: Motion, angles: Array) -> bool:
     Parameters
     ----------
     motion : Motion
+        Trajectory of the run.
     angles : ndarray, shape (m, N)
         Angles of the joints at the samples [rad].
     """

@@ -22,6 +22,7 @@ def checkpoint(simulation: Simulation) -> dict[str, Array]:
     Parameters
     ----------
     simulation : Simulation
+        Run in progress.
 
     Returns
     -------

@@ -29,6 +29,7 @@ def dataset_of(
     Parameters
     ----------
     run : Run
+        Result of a run.
     inputs : mapping, optional
         The complete input of the run; by default the fields of its model and schedule.
     load : str, optional

@@ -69,6 +69,7 @@ def close_up(simulation: Simulation) -> CloseUp | None:
     Parameters
     ----------
     simulation : Simulation
+        Run in progress.
 
     Returns
     -------

@@ -85,6 +85,7 @@ def finite_separation(
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     state : ndarray, shape (model.size,)
         A state on the attractor, such as the last one of a run.
     duration : float
@@ -108,15 +109,7 @@ def finite_separation(
     InputError
         An argument is out of its range, or the joints of the model wind up.
     """
-    if not (is_number(duration) and duration > 0.0):
-        raise InputError(f"duration = {duration!r} has to be a positive finite number")
-    if not isinstance(pairs, int | np.integer) or pairs < 2:
-        raise InputError(f"pairs = {pairs!r} has to be a whole number, at least 2")
-    if model.unwrapped:
-        raise InputError(
-            "a state whose joints have wound up cannot be started from; ask for the Lyapunov"
-            " exponents only"
-        )
+    _check(model, duration, pairs)
     schedule = Schedule(until=duration, samples=SAMPLE_COUNT, rtol=rtol, atol=atol)
     random = np.random.default_rng(seed)
     time, distances, fits = np.zeros(0), [], []
@@ -144,6 +137,18 @@ def finite_separation(
         time=time,
         distance=np.array(distances),
     )
+
+
+def _check(model: Model, duration: float, pairs: int) -> None:
+    if not (is_number(duration) and duration > 0.0):
+        raise InputError(f"duration = {duration!r} has to be a positive finite number")
+    if not isinstance(pairs, int | np.integer) or pairs < 2:
+        raise InputError(f"pairs = {pairs!r} has to be a whole number, at least 2")
+    if model.unwrapped:
+        raise InputError(
+            "a state whose joints have wound up cannot be started from; ask for the Lyapunov"
+            " exponents only"
+        )
 
 
 def _run(

@@ -142,6 +142,7 @@ def carry_on(
     Parameters
     ----------
     simulation : Simulation
+        Run in progress.
     budget : float
         Largest elapsed time [s].
     progress : callable, optional
@@ -192,6 +193,7 @@ def with_exponents(
     Parameters
     ----------
     simulation : Simulation
+        Run in progress.
     exponents : Exponents
         Condition for computing them.
     budget : float

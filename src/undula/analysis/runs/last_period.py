@@ -22,6 +22,7 @@ def last_period(run: Run) -> tuple[Instants, Shapes]:
     Parameters
     ----------
     run : Run
+        Result of a run.
 
     Returns
     -------
@@ -41,6 +42,7 @@ def last_path(run: Run) -> Array:
     Parameters
     ----------
     run : Run
+        Result of a run.
 
     Returns
     -------

@@ -23,7 +23,9 @@ def refuse_too_large(model: Model, schedule: Schedule) -> None:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     schedule : Schedule
+        Settings of the run.
 
     Raises
     ------
@@ -47,7 +49,9 @@ def needed_memory(model: Model, schedule: Schedule) -> int:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     schedule : Schedule
+        Settings of the run.
 
     Returns
     -------

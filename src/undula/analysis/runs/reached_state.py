@@ -54,6 +54,7 @@ def turned_by(model: Model, y: Array, angles: Array) -> Array:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     y : ndarray, shape (n,)
         Positions and multipliers.
     angles : ndarray, shape (m,)

@@ -108,7 +108,7 @@ class Run:
         return None if self.observation is None else self.observation.settled
 
     def judged(self, watch: Watch) -> Self:
-        """Return the run after its classification, with a callback for the exponents."""
+        """Return the run after its classification; `watch` is the callback of the exponents."""
         if "_judged" not in vars(self):
             vars(self)["_judged"] = self._judge(watch)  # the value of the cached property
         return self

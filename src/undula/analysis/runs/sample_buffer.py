@@ -49,6 +49,7 @@ class SampleBuffer:
         first : int
             Multiple of the first row.
         rows : ndarray, shape (m, n + RATES)
+            Unknowns and integrals in the lab frame.
         """
         if self.following(interval) != first:
             self.rows.clear()

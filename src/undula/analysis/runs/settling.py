@@ -115,6 +115,7 @@ class SettlingDetector:
         Parameters
         ----------
         pace : MotionRates
+            Rates at the check.
         returns : sequence of (float, ndarray)
             Time [T] and nodes (N + 1, 3) [L] of each maximum.
         """

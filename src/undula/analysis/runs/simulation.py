@@ -51,7 +51,7 @@ class Simulation:
 
     Attributes
     ----------
-    model, schedule, ending, cause
+    model, schedule, ending, cause, arrival, tight_from
         As in `undula.analysis.runs.run.Run`.
     memory : StepperState
         State of the integrator.
@@ -62,10 +62,6 @@ class Simulation:
         of the rate of rotation, of the active power and of the dissipation.
     observation : Observation or None
         Observation of the settled motion; None before the motion has settled.
-    arrival : ReachedState or None
-        Stable state that the run has reached and ended for.
-    tight_from : float or None
-        Time of a reduction of the tolerance, see `Tighten` [T].
     observe_until : float
         Earliest end of the observation [T].
     recent : SampleBuffer
@@ -173,11 +169,7 @@ class Simulation:
         self._keep(states if parts == 1 else states[-fine[0] % parts :: parts].copy())
         if noted:
             self.recent.note(self.interval / parts, int(fine[0]), states)
-        status = Status(code)
-        if not np.isfinite(self.memory.differences[0]).all():
-            status = Status.NOT_FINITE
-            self.rows[-1] = self.rows[-1][np.isfinite(self.rows[-1]).all(axis=1)]
-            self.sampled = sum(map(len, self.rows))
+        status = self._status(code)
         if status not in (Status.DONE, Status.PAUSED):
             self.ending, self.cause = Ending.FAILED, status.advice
             return False
@@ -201,6 +193,14 @@ class Simulation:
                 self._tighten(rtol)
             case rules.Continue():
                 self.ending = Ending.RUNNING
+
+    def _status(self, code: int) -> Status:
+        """Return the status of the integration, after removing samples that are not finite."""
+        if np.isfinite(self.memory.differences[0]).all():
+            return Status(code)
+        self.rows[-1] = self.rows[-1][np.isfinite(self.rows[-1]).all(axis=1)]
+        self.sampled = sum(map(len, self.rows))
+        return Status.NOT_FINITE
 
     def _keep(self, rows: Array) -> None:
         """Add samples to those so far."""

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.linear.results import CriticalCurve, GrowthCurve, Onset, Spectrum
-from undula.analysis.linear.stability import critical_curve, growth_curve, onset, spectrum
+from undula.analysis.linear.spectrum import spectrum
+from undula.analysis.linear.stability import critical_curve, growth_curve, onset
 from undula.analysis.parameters import changed
 from undula.app.commands import stability_text as text
 from undula.inputs.build import build_model
