@@ -5,7 +5,8 @@ import pytest
 import undula as un
 from commands import Ask, answer, text
 from undula.analysis.linear.stability import method_for_all
-from undula.analysis.solvers.thresholds import Threshold, threshold, threshold_curve
+from undula.analysis.solvers.threshold_record import Threshold
+from undula.analysis.solvers.thresholds import threshold, threshold_curve
 from undula.terminal.numbers import BODY, LINKS, digits, on_links, told_of, with_error
 
 TWELVE = un.Filament(segments=12, load=un.TipLoad(75.0))

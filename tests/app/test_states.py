@@ -215,6 +215,8 @@ def test_a_branch_from_the_onset_tells_how_it_is_born(ask: Ask) -> None:
     found = answer(ask("follow", "spinning", *FEW, "--along", "load.force=onset:45", "--json"))
     onset = un.onset(EIGHT, method="discrete")
     assert found["birth"] == "supercritical"
+    # Located to round-off by both.
+    assert found["onset"] == pytest.approx(onset.force, rel=1e-9)
     # The first point lies a little off the Hopf point.
     assert found["points"][0]["load.force"] == pytest.approx(onset.force, rel=0.01)
     assert found["points"][0]["frequency"] == pytest.approx(onset.frequency, rel=0.02)
@@ -340,8 +342,10 @@ def test_a_figure_replaces_nothing_unless_told_to(
 ) -> None:
     Path("mine.pdf").write_text("mine")
     with monkeypatch.context() as patched:
-        for compute in ("following.follow_along", "thresholding.tell_thresholds"):
-            patched.setattr(f"undula.app.{compute}", lambda *_: pytest.fail("it was computed"))
+        for compute in ("follow.follow_along", "threshold.answer_threshold_curve"):
+            patched.setattr(
+                f"undula.app.commands.{compute}", lambda *_: pytest.fail("it was computed")
+            )
         assert "--overwrite" in refused(ask(*DRAWN[question], "--plot", "mine.pdf", "--json"))
     assert Path("mine.pdf").read_text() == "mine"
     assert ask(*DRAWN[question], "--plot", "mine.pdf", "--overwrite")[0] == 0
@@ -418,8 +422,10 @@ def test_bad_input_gets_one_sentence_and_with_json_one_object(
 def test_what_cannot_be_drawn_is_refused_before_anything_is_computed(
     ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for compute in ("following.follow_along", "thresholding.tell_threshold"):
-        monkeypatch.setattr(f"undula.app.{compute}", lambda *_: pytest.fail("it was computed"))
+    for compute in ("follow.follow_along", "threshold.answer_threshold"):
+        monkeypatch.setattr(
+            f"undula.app.commands.{compute}", lambda *_: pytest.fail("it was computed")
+        )
     along = ["--along", "load.force=40:50"]
     for words in (
         ["follow", "straight", "--along", "model.drag_ratio=1:2", "--plot", "a.png"],

@@ -128,7 +128,7 @@ def follow(
 ) -> int:
     """Follow a state along a parameter, with its stability and its bifurcations."""
     from undula.analysis.linear.straight_branch import StraightBranch
-    from undula.app.commands.follow import Way, follow_along
+    from undula.app.commands.follow import ParameterInterval, follow_along
     from undula.inputs.build import build_model
     from undula.inputs.input import read_model_input
     from undula.inputs.ranges import parse_way
@@ -136,12 +136,12 @@ def follow(
     from undula.terminal.output import notice
 
     wanted = read_model_input(file, changes or ())
-    way = Way(*parse_way("--along", along))
+    interval = ParameterInterval(*parse_way("--along", along))
     with _figure_claimed(plot, overwrite=overwrite, reads=[file, *(runs or ())]) as claim:
-        stored = _runs_to_draw(kind, way.parameter, plot, runs or ())
-        model, title = build_model(wanted), wanted.tell({way.parameter})
+        stored = _runs_to_draw(kind, interval.parameter, plot, runs or ())
+        model, title = build_model(wanted), wanted.tell({interval.parameter})
         with compilation_announced(notice):
-            told, branch = follow_along(model, kind, way, converge=converge, title=title)
+            told, branch = follow_along(model, kind, interval, converge=converge, title=title)
 
         def save(path: Path) -> None:
             from undula.app.commands.drawing import draw_branch, draw_straight
@@ -182,7 +182,7 @@ def threshold(
 ) -> int:
     """Find the force at which a state gains or loses stability, also along a parameter."""
     from undula.analysis.parameters import FORCE
-    from undula.app.commands.threshold import tell_threshold, tell_thresholds
+    from undula.app.commands.threshold import answer_threshold, answer_threshold_curve
     from undula.inputs.build import build_model
     from undula.inputs.input import read_model_input
     from undula.inputs.ranges import parse_axis
@@ -196,13 +196,13 @@ def threshold(
             raise InputError("--plot draws a curve; give --along as well")
         title = wanted.tell({FORCE})
         with compilation_announced(notice):
-            told = tell_threshold(model, name, converge=converge, up_to=end, title=title)
+            told = answer_threshold(model, name, converge=converge, up_to=end, title=title)
         return _reply(told, None, as_json=as_json)
     axis = parse_axis("--along", along)
     with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
         title = wanted.tell({FORCE, axis[0]})
         with compilation_announced(notice):
-            told, found = tell_thresholds(
+            told, found = answer_threshold_curve(
                 model, name, axis, converge=converge, up_to=end, title=title
             )
 

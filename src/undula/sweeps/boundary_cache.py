@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from undula.analysis.maps.stability_boundaries import StabilityBoundaries, border_column
+from undula.analysis.maps.stability_boundaries import StabilityBoundaries, intervals_at
 from undula.analysis.maps.stability_intervals import Change, StabilityIntervals
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
@@ -51,7 +51,7 @@ def columns_of(jobs: Sequence[Mapping[str, Any]]) -> list[Column]:
     columns: list[Column] = []
     for job in jobs:
         model = build_model(parse_input(job["tables"]))
-        columns.append(border_column(model, job["parameter"], job["value"], job["up_to"]))
+        columns.append(intervals_at(model, job["parameter"], job["value"], job["up_to"]))
     return columns
 
 

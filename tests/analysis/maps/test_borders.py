@@ -14,11 +14,11 @@ from sweeps import made_up
 from undula.analysis.linear.results import Crossing, Onset
 from undula.analysis.maps.contradictions import contradictions
 from undula.analysis.maps.stability_boundaries import (
-    BORDERS,
+    BOUNDARIES,
     StabilityBoundaries,
     stability_boundaries,
 )
-from undula.analysis.maps.stability_intervals import StabilityIntervals, straight_stretches
+from undula.analysis.maps.stability_intervals import StabilityIntervals, straight_intervals
 from undula.analysis.solvers.thresholds import threshold
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning
@@ -98,8 +98,8 @@ def test_a_branch_born_downwards_has_a_fold_below_the_onset() -> None:
     state = borders.columns[0]["spinning"]
     assert state.begins == fold
     # Beyond the fold there is a stable state; short of it there is none.
-    assert state.holds(1.01 * fold)
-    assert not state.holds(0.99 * fold)
+    assert state.is_stable_at(1.01 * fold)
+    assert not state.is_stable_at(0.99 * fold)
     beyond = un.find_spinning(LOW.with_(force=1.01 * fold))
     assert isinstance(beyond, Spinning)
     assert beyond.stable
@@ -110,12 +110,16 @@ def test_values_without_a_border_are_gaps_with_reasons() -> None:
     borders = over_position()
     onsets = borders.curve("onset")[0]
     assert np.isfinite(onsets).tolist() == [True, False, True]
-    assert "1.5" in str(borders.gap("onset", 1))
-    assert borders.gap("onset", 0) is None
+    assert "1.5" in str(borders.why_no_boundary("onset", 1))
+    assert borders.why_no_boundary("onset", 0) is None
     assert np.isnan(borders.curve("spinning-lost")[0]).all()
-    assert borders.gap("spinning-lost", 2) == "spinning does not lose stability up to force 140"
-    assert borders.gap("flapping-gained", 2) == "flapping does not become stable up to force 140"
-    assert borders.gap("spinning-fold", 2) == "spinning is born upwards"
+    for name, missing in (
+        ("spinning-lost", "lose stability"),
+        ("flapping-gained", "become stable"),
+    ):
+        sentence = f"{name.split('-')[0]} does not {missing} up to force 140"
+        assert borders.why_no_boundary(name, 2) == sentence
+    assert borders.why_no_boundary("spinning-fold", 2) == "spinning is born upwards"
 
 
 def test_a_filament_that_stays_straight_has_no_borders() -> None:
@@ -123,15 +127,15 @@ def test_a_filament_that_stays_straight_has_no_borders() -> None:
         segments=8, load=un.TableLoad(20.0, s=(0.0, 0.2, 0.4, 1.0), density=(1.0, 1.0, -0.4, -0.4))
     )
     borders = stability_boundaries(pulled, None, (), 300.0)
-    for name in BORDERS:
+    for name in BOUNDARIES:
         assert np.isnan(borders.curve(name)[0]).all()
-        assert "stable" in str(borders.gap(name, 0))
+        assert "stable" in str(borders.why_no_boundary(name, 0))
 
 
 def test_a_confined_filament_has_no_border_of_spinning() -> None:
     # Below the onset no branch has to be followed.
     borders = stability_boundaries(EIGHT.with_(confined=True), None, (), 30.0)
-    assert borders.gap("spinning-lost", 0) == "a confined model cannot spin"
+    assert borders.why_no_boundary("spinning-lost", 0) == "a confined model cannot spin"
     assert borders.columns[0]["flapping"].stable[0][0] == borders.curve("onset")[0][0]
 
 
@@ -146,7 +150,7 @@ def test_progress_counts_the_values() -> None:
 def test_a_straight_state_that_comes_to_rest_again_has_two_stretches() -> None:
     crossings = [Crossing(force, 0.0, 5.0, 0.0, slope) for force, slope in ((30, 1), (50, -1))]
     onset = Onset(crossings[0], None, None, (crossings[1],), 50.0, "discrete")
-    assert straight_stretches(onset).stable == ((0.0, 30.0), (50.0, np.inf))
+    assert straight_intervals(onset).stable == ((0.0, 30.0), (50.0, np.inf))
 
 
 @pytest.mark.parametrize("up_to", [0.0, float("inf"), float("nan")])

@@ -11,7 +11,8 @@ from undula.analysis.solvers.criticality import Criticality, criticality
 from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
 from undula.analysis.solvers.periodic_search import find_periodic
 from undula.analysis.solvers.spinning import find_spinning
-from undula.analysis.solvers.thresholds import Threshold, threshold
+from undula.analysis.solvers.threshold_record import Threshold
+from undula.analysis.solvers.thresholds import threshold
 from undula.analysis.states.branch import Bifurcation
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
@@ -109,7 +110,7 @@ def test_the_bend_at_birth_is_that_of_the_branch() -> None:
     across = state.nodes[1:, :2]
     away = np.sum(across**2) / (3 * len(across))
     # The distance along the axis is of higher order, the next term of the series of 1 per cent.
-    assert 0.0005 * bend.force / away == pytest.approx(bend.bend, rel=0.05)
+    assert 0.0005 * bend.force / away == pytest.approx(bend.quadratic_coefficient, rel=0.05)
 
 
 def test_spinning_under_a_low_force_is_born_downwards_and_turns_in_a_fold() -> None:

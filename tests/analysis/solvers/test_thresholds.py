@@ -10,7 +10,8 @@ from refusal import complaint
 from undula.analysis.solvers.flapping import find_flapping
 from undula.analysis.solvers.refind import limit_of, refind_bifurcation
 from undula.analysis.solvers.spinning import find_spinning
-from undula.analysis.solvers.thresholds import THRESHOLDS, Threshold, threshold, threshold_curve
+from undula.analysis.solvers.threshold_record import Threshold
+from undula.analysis.solvers.thresholds import THRESHOLDS, threshold, threshold_curve
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.records import Flapping, Spinning

@@ -1,4 +1,4 @@
-"""Shares of starts that end in each verdict, at each point of a sweep with several tries."""
+"""Shares of initial states that end in each verdict, at points of a sweep with several tries."""
 
 from statistics import NormalDist
 
@@ -14,11 +14,11 @@ VERDICT = "verdict"
 
 
 def wilson_interval(hits: Array, tries: Array, confidence: float = 0.95) -> tuple[Array, Array]:
-    """Return the interval in which the share that so many hits are an estimate of lies.
+    """Return Wilson's score interval of a share that is estimated from hits among tries.
 
-    Wilson's score interval: the shares p from which the observed one is not farther than z of their
-    own standard deviations sqrt(p (1 - p) / n). It stays within 0 and 1, and is not empty where all
-    or none hit.
+    It holds the shares p from which the observed share is at most z of their own standard
+    deviations sqrt(p (1 - p) / n) away. It stays within 0 and 1, and is not empty where all or no
+    tries hit.
 
     Parameters
     ----------
@@ -37,6 +37,13 @@ def wilson_interval(hits: Array, tries: Array, confidence: float = 0.95) -> tupl
     InputError
         The confidence is out of range.
 
+    Examples
+    --------
+    >>> import numpy as np
+    >>> low, high = wilson_interval(np.array(8), np.array(10))
+    >>> round(float(low), 3), round(float(high), 3)
+    (0.49, 0.943)
+
     References
     ----------
     E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
@@ -49,14 +56,14 @@ def wilson_interval(hits: Array, tries: Array, confidence: float = 0.95) -> tupl
     share = hits / n
     middle = (share + 0.5 * z**2 / n) / (1.0 + z**2 / n)
     half = z / (1.0 + z**2 / n) * np.sqrt(share * (1.0 - share) / n + 0.25 * z**2 / n**2)
-    # Round-off alone keeps the ends from 0 and 1 where all or none hit.
+    # Round-off alone keeps the ends from 0 and 1 where all or no tries hit.
     low = np.where(hits == 0.0, 0.0, middle - half)
     high = np.where(hits == tries, 1.0, middle + half)
     return low, high
 
 
 def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
-    """Return the share of starts that end in each verdict.
+    """Return the share of initial states that end in each verdict.
 
     Parameters
     ----------
@@ -68,34 +75,40 @@ def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Over the axes `tries`, the number of starts with an answer; over the axes and `verdict`,
-        those that occur, the most frequent first, `hits`, `fraction`, `low` and `high`: the share
-        and the ends of its Wilson interval. Shares are NaN where there are no tries.
+        Over the axes `tries`, the number of initial states with an answer; over the axes and
+        `verdict`, those that occur, the most frequent first, `hits`, `fraction`, `low` and `high`:
+        the share and the ends of its Wilson interval. Shares are NaN where nothing was tried.
 
     Raises
     ------
     InputError
-        It is no stored sweep, or the confidence is out of range.
+        It is not a stored sweep, or the confidence is out of range.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> shares = un.basins(un.load_sweep("basins"))  # doctest: +SKIP
+    >>> shares["fraction"].sel(verdict="spinning")  # doctest: +SKIP
     """
-    words = verdicts_of(store)
-    names, counts = np.unique(words.values[words.values != ""], return_counts=True)
+    verdicts = verdicts_of(store)
+    names, counts = np.unique(verdicts.values[verdicts.values != ""], return_counts=True)
     ordered = names[np.argsort(-counts, kind="stable")]
     labels = xr.DataArray(ordered, dims=VERDICT, coords={VERDICT: ordered})
-    hits = (words == labels).sum(TRY)
+    hits = (verdicts == labels).sum(TRY)
     tries = (store["status"] == DONE).sum(TRY)
     low, high = (
         xr.DataArray(end, coords=hits.coords, dims=hits.dims)
         for end in wilson_interval(hits.values, (tries + 0 * hits).values, confidence)
     )
     fraction = (hits / tries.where(tries > 0)).transpose(*hits.dims)
-    known = tries > 0
+    tried = tries > 0
     return xr.Dataset(
         {
             "tries": tries,
             "hits": hits,
             "fraction": fraction,
-            "low": low.where(known),
-            "high": high.where(known),
+            "low": low.where(tried),
+            "high": high.where(tried),
         },
         attrs={"confidence": confidence} | {"units": store.attrs.get("units", "{}")},
     )

@@ -1,4 +1,4 @@
-"""Points of a sweep whose verdict contradicts the solved states."""
+"""Points of a sweep whose verdicts contradict the solved states."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -36,9 +36,9 @@ class Disagreement:
         Its place on the axes, and its try.
     verdict : str
     sentence : str
-        What contradicts what.
+        The verdict and the stability that it contradicts.
     near : bool
-        Whether a border is so near that the run may have been too short to tell.
+        Whether a boundary is so near that the run may have been too short to leave the state.
     """
 
     at: Mapping[str, float]
@@ -50,37 +50,51 @@ class Disagreement:
 def contradictions(
     store: xr.Dataset, borders: StabilityBoundaries, *, near: float = 0.02
 ) -> tuple[Disagreement, ...]:
-    """Return the points whose verdict contradicts the solved states.
+    """Return the points of a sweep whose verdicts contradict the solved states.
 
     A run that ends straight, spinning or flapping in a plane has to be where that state is stable;
-    one that moves in any other manner contradicts only a force below which nothing moves. What is
-    undecided, and forces beyond those that a branch was followed to, contradict nothing.
+    any other motion contradicts only a force below which nothing moves. Undecided runs, and forces
+    beyond those that a branch was followed to, contradict nothing.
 
     Parameters
     ----------
     store : xarray.Dataset
-        A stored sweep over the force and, if the borders have one, their parameter.
-    borders : Borders
+        A stored sweep over the force and, if the boundaries have one, their parameter.
+    borders : StabilityBoundaries
     near : float
-        Within this share of a border's force a contradiction is told as near: there rates are so
-        small that a run of finite length may show a state that is about to be left.
+        Share of a boundary's force within which a contradiction is marked as near: growth rates are
+        so small there that a run of finite length may show a state that it is about to leave.
+
+    Returns
+    -------
+    tuple of Disagreement
 
     Raises
     ------
     InputError
         The store is over other axes.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> sweep = un.load_sweep("point-loads")  # doctest: +SKIP
+    >>> model = un.Filament(20, un.PointLoad(75.0, position=0.5))
+    >>> boundaries = un.stability_boundaries(
+    ...     model, "load.position", sweep["load.position"].values, 300.0
+    ... )  # doctest: +SKIP
+    >>> [point.sentence for point in un.contradictions(sweep, boundaries)]  # doctest: +SKIP
     """
     _check(store, borders)
-    found = []
-    for at, verdict in _points(store):
-        here = at[FORCE]
-        column = borders.columns[_index(borders, at)]
-        sentence, edges = _contradiction(verdict, here, column)
+    result = []
+    for place, verdict in _points(store):
+        force = place[FORCE]
+        column = borders.columns[_index(borders, place)]
+        sentence, edges = _contradiction(verdict, force, column)
         if sentence is not None:
-            close = any(abs(here - edge) <= near * edge for edge in edges)
-            where = ", ".join(f"{name} = {value:g}" for name, value in at.items() if name != TRY)
-            found.append(Disagreement(at, verdict, f"{verdict} at {where}: {sentence}", close))
-    return tuple(found)
+            close = any(abs(force - edge) <= near * edge for edge in edges)
+            where = ", ".join(f"{name} = {value:g}" for name, value in place.items() if name != TRY)
+            result.append(Disagreement(place, verdict, f"{verdict} at {where}: {sentence}", close))
+    return tuple(result)
 
 
 def _check(store: xr.Dataset, borders: StabilityBoundaries) -> None:
@@ -98,45 +112,45 @@ def _points(store: xr.Dataset) -> Iterator[tuple[dict[str, float], str]]:
     """Yield place and verdict of each run with an answer."""
     verdicts = verdicts_of(store)
     for index in np.argwhere(verdicts.values != ""):
-        at = {
+        place = {
             str(name): float(store[name].values[k]) if name in store.coords else float(k)
             for name, k in zip(verdicts.dims, index, strict=True)
         }
-        yield at, str(verdicts.values[tuple(index)])
+        yield place, str(verdicts.values[tuple(index)])
 
 
-def _index(borders: StabilityBoundaries, at: Mapping[str, float]) -> int:
-    """Return which column of the borders a point belongs to."""
+def _index(borders: StabilityBoundaries, place: Mapping[str, float]) -> int:
+    """Return the index of the column that a point belongs to."""
     if borders.parameter is None:
         return 0
-    return int(np.argmin(np.abs(np.array(borders.values) - at[borders.parameter])))
+    return int(np.argmin(np.abs(np.array(borders.values) - place[borders.parameter])))
 
 
 def _contradiction(
     verdict: str, force: float, column: Mapping[str, StabilityIntervals]
 ) -> tuple[str | None, tuple[float, ...]]:
-    """Return what contradicts a verdict, if anything does, and the forces of borders nearby."""
+    """Return a sentence for what contradicts a verdict, None if it is right, and the boundaries."""
     kind = KINDS.get(verdict)
     if kind is not None:
         state = column[kind]
         if force > state.searched_to or state.is_stable_at(force):
             return None, ()
-        return _told(state, force), state.edges
+        return _sentence(state, force), state.edges
     begins = [state.begins for state in column.values() if state.kind != "straight"]
-    if verdict == UNDECIDED or any(one is None or one <= force for one in begins):
+    if verdict == UNDECIDED or any(begin is None or begin <= force for begin in begins):
         return None, ()
-    edges = tuple(one for one in begins if one is not None)
+    edges = tuple(begin for begin in begins if begin is not None)
     return f"spinning and flapping begin at force {min(edges):.6g}", edges
 
 
-def _told(state: StabilityIntervals, force: float) -> str:
+def _sentence(state: StabilityIntervals, force: float) -> str:
     name = _NAMES[state.kind]
     if state.begins is not None and force < state.begins:
         return f"{name} begins at force {state.begins:.6g}"
     if not state.stable:
         return f"{name} is stable at no force up to {state.searched_to:.6g}"
-    stretches = " and ".join(
+    intervals = " and ".join(
         f"from {low:.6g} on" if high == np.inf else f"from force {low:.6g} to {high:.6g}"
         for low, high in state.stable
     )
-    return f"{name} is stable {stretches} only"
+    return f"{name} is stable {intervals} only"

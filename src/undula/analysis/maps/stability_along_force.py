@@ -1,8 +1,7 @@
-"""What a filament does at a point of a diagram, told by solved states alone, without a run.
+"""Stability of solved states at points of a diagram, without runs in time.
 
-Three states are asked: is the straight one stable, does spinning exist and is it stable, and so for
-planar flapping. Where one of them is stable a run can end there; where none is, what runs do is
-left to runs.
+Three states are solved for: the straight one, spinning and planar flapping. Where one of them is
+stable a run can end there; where all are unstable or do not exist, only runs show the motion.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -24,21 +23,21 @@ from undula.arrays import Shapes
 from undula.models.model import Model
 from undula.numerics.orbits.periodic_orbit import OrbitProblem, orbit_at, time_error
 
-#: Verdicts by kind of state, the one that is told first where several are stable.
+#: Verdicts by kind of state; the first that is stable is the verdict.
 VERDICTS: Mapping[str, str] = {
     "straight": "straight",
     "spinning": "spinning",
     "flapping": "planar flapping",
 }
-#: What a record tells of each kind.
+#: Status of a kind of state in a record.
 STABLE, UNSTABLE, NONE, MISSED = "stable", "unstable", "none", "not found"
 _MOVING = ("spinning", "flapping")
-# Instants of a turn at which a spinning shape is looked at.
+# Number of instants of a turn at which the planarity of a spinning shape is computed.
 _INSTANTS = 32
 
 
 def solved_record(model: Model) -> dict[str, Any]:
-    """Return what a model does under its own force, as far as solved states tell.
+    """Return the stability of the states of a model under its own force.
 
     Parameters
     ----------
@@ -47,28 +46,28 @@ def solved_record(model: Model) -> dict[str, Any]:
     Returns
     -------
     dict
-        The keys of a stored sweep: `verdict`, the stable state, or "undecided" if none of the three
-        is; `also`, other stable ones, with commas between them; `margin`, the largest
-        growth rate of a disturbance of the state [1/T], negative; `frequency` and `frequency_error`
-        [cycles per T]; `energy_min`, `energy_max`, `energy_mean`; `tip_radius_min`,
-        `tip_radius_max` [L]; `planarity`. And of each kind, as `spinning`, whether it is "stable",
-        "unstable", "none" (it does not exist) or "not found" (it may), with its `spinning_rate`
-        [1/T] and `spinning_frequency`. Numbers that do not exist are NaN.
+        The keys of a stored sweep: `verdict`, the stable state, or "undecided" if all three are
+        unstable or missing; `also`, other stable ones, with commas between them; `margin`, the
+        largest growth rate of a disturbance of the state [1/T], negative; `frequency` and
+        `frequency_error` [cycles per T]; `energy_min`, `energy_max`, `energy_mean`;
+        `tip_radius_min`, `tip_radius_max` [L]; `planarity`. And of each kind, as `spinning`, its
+        status: "stable", "unstable", "none" (it does not exist) or "not found" (it may), with its
+        `spinning_rate` [1/T] and `spinning_frequency`. Numbers that do not exist are NaN.
     """
     rest = spectrum(model, method="discrete", count=1)
     force = model.load.force
     if rest.rates[0] <= 0.0:
-        # Only a branch that is born downwards comes here.
-        found = {kind: states_along(model, kind, [force]).get(force) for kind in _kinds(model)}
+        # Only a subcritical branch reaches forces below the onset.
+        states = {kind: states_along(model, kind, [force]).get(force) for kind in _kinds(model)}
     else:
-        found = {kind: kind_by_name(kind).find(model) for kind in _kinds(model)}
-    return _record(rest, found)
+        states = {kind: kind_by_name(kind).find(model) for kind in _kinds(model)}
+    return _record(rest, states)
 
 
 def stability_along_force(
     model: Model, forces: Sequence[float], *, progress: Callable[[float], None] | None = None
 ) -> list[dict[str, Any]]:
-    """Return what a model does at each of many forces, from branches that are followed once.
+    """Return the stability of the states of a model at many forces, following each branch once.
 
     Parameters
     ----------
@@ -77,49 +76,56 @@ def stability_along_force(
     forces : sequence of float
         In the model's unit of force and in any order, none below 0.
     progress : callable, optional
-        Called with each force that a branch has reached.
+        Called with each force that was reached.
 
     Returns
     -------
     list of dict
-        For each force what `solved_record` tells. It may know more: a branch that folds back below
-        the onset is followed around its fold.
+        For each force the record of `solved_record`. More states may be found: a branch that folds
+        back below the onset is followed around its fold.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(8, un.TipLoad(75.0))
+    >>> [record["verdict"] for record in un.stability_along_force(model, [20.0, 30.0])]
+    ['straight', 'straight']
     """
-    found = {kind: states_along(model, kind, forces, progress) for kind in _kinds(model)}
+    states = {kind: states_along(model, kind, forces, progress) for kind in _kinds(model)}
     return [
         _record(
             spectrum(model, force, method="discrete", count=1),
-            {kind: states.get(force) for kind, states in found.items()},
+            {kind: at_forces.get(force) for kind, at_forces in states.items()},
         )
         for force in forces
     ]
 
 
 def _kinds(model: Model) -> tuple[str, ...]:
-    """Return the kinds of states that a model can have; in a plane nothing spins."""
+    """Return the kinds of moving states that a model can have; in a plane nothing spins."""
     return _MOVING if model.dimension == 3 else ("flapping",)
 
 
-def _record(rest: Spectrum, found: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the record of the straight state's spectrum, and of the states beside it."""
+def _record(rest: Spectrum, states: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the record of the straight state's spectrum and of the moving states."""
     status = {"straight": STABLE if rest.rates[0] < 0.0 else UNSTABLE}
-    status |= {kind: _standing(found.get(kind)) for kind in _MOVING}
-    stable = [kind for kind, told in status.items() if told == STABLE]
+    status |= {kind: _status(states.get(kind)) for kind in _MOVING}
+    stable = [kind for kind, word in status.items() if word == STABLE]
     first, others = (stable[0], stable[1:]) if stable else (None, [])
     record: dict[str, Any] = {
         "verdict": VERDICTS[first] if first else "undecided",
         "also": ", ".join(VERDICTS[kind] for kind in others),
     }
-    record |= _at_rest(rest) if first == "straight" else _moving(found.get(first or ""))
-    rates = {"straight": float(rest.rates[0])} | {kind: _rate(found.get(kind)) for kind in _MOVING}
-    for kind, told in status.items():
-        record |= {kind: told, f"{kind}_rate": rates[kind]}
+    record |= _at_rest(rest) if first == "straight" else _moving(states.get(first or ""))
+    rates = {"straight": float(rest.rates[0])} | {kind: _rate(states.get(kind)) for kind in _MOVING}
+    for kind, word in status.items():
+        record |= {kind: word, f"{kind}_rate": rates[kind]}
     return record | {
-        f"{kind}_frequency": getattr(found.get(kind), "frequency", np.nan) for kind in _MOVING
+        f"{kind}_frequency": getattr(states.get(kind), "frequency", np.nan) for kind in _MOVING
     }
 
 
-def _standing(state: Any) -> str:
+def _status(state: Any) -> str:
     if state is None:
         return NONE
     if isinstance(state, NotFound):
@@ -137,7 +143,7 @@ def _at_rest(rest: Spectrum) -> dict[str, float]:
 
 
 def _moving(state: Spinning | Flapping | None) -> dict[str, float]:
-    """Return the quantities of a stable state, without numbers if there is none."""
+    """Return the quantities of a stable state, NaN without one."""
     if state is None:
         missing = Range(np.nan, np.nan, np.nan)
         return _quantities(np.nan, (np.nan, np.nan), missing, missing, np.nan)
@@ -159,7 +165,7 @@ def _moving(state: Spinning | Flapping | None) -> dict[str, float]:
 
 
 def _time_error(state: Flapping) -> float:
-    """Return the error of the frequency by the steps in time, which a branch does not tell."""
+    """Return the error of the frequency by the steps in time, which a branch does not compute."""
     problem = flapping_family(state, FORCE, 1.0).problem
     assert isinstance(problem, OrbitProblem)  # as beats have it
     orbit = orbit_at(problem, flapping_unknowns(state), state.force)

@@ -1,11 +1,11 @@
-"""Borders of a diagram over a parameter and the force, solved for instead of run across.
+"""Stability boundaries over a parameter and the force, solved for without runs in time.
 
-| border | what happens there |
+| boundary | change there |
 | --- | --- |
 | onset | the straight state loses stability, for the links as they are |
-| spinning-fold | the least force with spinning, where it is born downwards |
+| spinning-fold | the least force with spinning, if it is subcritical |
 | spinning-lost | spinning loses stability |
-| flapping-fold | the least force with planar flapping, where it is born downwards |
+| flapping-fold | the least force with planar flapping, if it is subcritical |
 | flapping-gained | planar flapping becomes stable |
 | flapping-lost | planar flapping ceases to be stable |
 """
@@ -19,17 +19,17 @@ from undula.analysis.linear.stability import onset
 from undula.analysis.maps.stability_intervals import (
     Change,
     StabilityIntervals,
-    moving_stretches,
-    nothing_known,
-    straight_stretches,
+    moving_intervals,
+    straight_intervals,
+    unknown_intervals,
 )
 from undula.analysis.parameters import FORCE, changed
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.model import Model
 
-#: Borders by name: of which kind of state they are, and which change of it.
-BORDERS: Mapping[str, tuple[str, str]] = {
+#: Boundaries by name: kind of state, and name of its change.
+BOUNDARIES: Mapping[str, tuple[str, str]] = {
     "onset": ("straight", "lost"),
     "spinning-fold": ("spinning", "fold"),
     "spinning-lost": ("spinning", "lost"),
@@ -38,24 +38,24 @@ BORDERS: Mapping[str, tuple[str, str]] = {
     "flapping-lost": ("flapping", "lost"),
 }
 _MOVING = ("spinning", "flapping")
-# Crossings of the straight state after the first that are looked for: it may come to rest again.
+# Number of crossings of the straight state after the first: it may become stable again.
 _LATER = 2
 
 
 @dataclass(frozen=True)
 class StabilityBoundaries:
-    """Where states begin and are stable, at each value of a parameter.
+    """Stability of states along the force, at each value of a parameter.
 
     Attributes
     ----------
     parameter : str or None
-        Its name; None for the borders of a single model.
+        Its name; None for a single model.
     values : tuple of float
         Its values; of a single model one, which is NaN.
     up_to : float
-        Forces of interest end here.
-    columns : tuple of mapping of str to Stretches
-        For each value what is known of "straight", "spinning" and "flapping".
+        The largest force of interest.
+    columns : tuple of mapping of str to StabilityIntervals
+        For each value the intervals of "straight", "spinning" and "flapping".
     """
 
     parameter: str | None
@@ -64,25 +64,43 @@ class StabilityBoundaries:
     columns: tuple[Mapping[str, StabilityIntervals], ...]
 
     def curve(self, name: str) -> tuple[Array, Array]:
-        """Return the forces (k,) of a border over the values, NaN where it has none, and errors.
+        """Return the forces of a boundary over the values, and their errors.
+
+        Parameters
+        ----------
+        name : str
+            One of `BOUNDARIES`.
+
+        Returns
+        -------
+        tuple of two ndarray of shape (k,)
+            Forces and errors [B/L^2], NaN at values without such a boundary.
 
         Raises
         ------
         InputError
-            There is no such border.
+            There is no such boundary.
         """
-        if name not in BORDERS:
-            raise InputError(f"border {name!r} is not known; take {', '.join(BORDERS)}")
-        kind, change = BORDERS[name]
-        found: list[Change | None] = [getattr(column[kind], change) for column in self.columns]
+        if name not in BOUNDARIES:
+            raise InputError(f"border {name!r} is not known; take {', '.join(BOUNDARIES)}")
+        kind, attribute = BOUNDARIES[name]
+        changes: list[Change | None] = [getattr(column[kind], attribute) for column in self.columns]
         return (
-            np.array([np.nan if one is None else one.force for one in found]),
-            np.array([np.nan if one is None else one.error for one in found]),
+            np.array([np.nan if change is None else change.force for change in changes]),
+            np.array([np.nan if change is None else change.error for change in changes]),
         )
 
-    def gap(self, name: str, index: int) -> str | None:
-        """Return why a border has no force at a value, None if it has one."""
-        kind, change = BORDERS[name]
+    def why_no_boundary(self, name: str, index: int) -> str | None:
+        """Return why a boundary has no force at a value, None if it has one.
+
+        Parameters
+        ----------
+        name : str
+            One of `BOUNDARIES`.
+        index : int
+            Of the value, from 0.
+        """
+        kind, change = BOUNDARIES[name]
         state = self.columns[index][kind]
         if getattr(state, change) is not None:
             return None
@@ -102,7 +120,7 @@ def stability_boundaries(
     *,
     progress: Callable[[int, int], None] | None = None,
 ) -> StabilityBoundaries:
-    """Return the borders between the motions of a model, over values of a parameter.
+    """Return the stability boundaries of the states of a model, over values of a parameter.
 
     Parameters
     ----------
@@ -119,13 +137,24 @@ def stability_boundaries(
 
     Returns
     -------
-    Borders
-        Values at which a search fails have gaps with their reasons.
+    StabilityBoundaries
+        Values at which a search fails have no boundary, with the reason.
 
     Raises
     ------
     InputError
         The parameter is the force, or `up_to` is out of range.
+
+    Examples
+    --------
+    Below the onset no branch has to be followed:
+
+    >>> import undula as un
+    >>> model = un.Filament(8, un.TipLoad(75.0))
+    >>> boundaries = un.stability_boundaries(model, None, (), 30.0)
+    >>> forces, errors = boundaries.curve("onset")
+    >>> forces.round(4)
+    array([35.193])
     """
     if parameter == FORCE:
         raise InputError(f"borders are values of {FORCE}; take another parameter, or none")
@@ -134,35 +163,35 @@ def stability_boundaries(
     taken = (float("nan"),) if parameter is None else tuple(float(value) for value in values)
     columns = []
     for done, value in enumerate(taken, start=1):
-        columns.append(border_column(model, parameter, value, up_to))
+        columns.append(intervals_at(model, parameter, value, up_to))
         if progress:
             progress(done, len(taken))
     return StabilityBoundaries(parameter, taken, float(up_to), tuple(columns))
 
 
-def border_column(
+def intervals_at(
     model: Model, parameter: str | None, value: float, up_to: float
 ) -> dict[str, StabilityIntervals]:
-    """Return what is known of "straight", "spinning" and "flapping" at one value of a parameter.
+    """Return the intervals of "straight", "spinning" and "flapping" at one value of a parameter.
 
-    Arguments are those of `stability_boundaries`.
+    Parameters are those of `stability_boundaries`.
     """
     try:
-        there = model if parameter is None else changed(model, parameter, value)
-        # The runs of a diagram are of links as they are, and so are the other borders.
-        straight_onset = onset(there, method="discrete", later=_LATER)
+        here = model if parameter is None else changed(model, parameter, value)
+        # The runs of a diagram are of links as they are, and so are the other boundaries.
+        straight_onset = onset(here, method="discrete", later=_LATER)
     except (InputError, ArithmeticError, np.linalg.LinAlgError) as error:
-        return {kind: nothing_known(kind, str(error)) for kind in ("straight", *_MOVING)}
-    column = {"straight": straight_stretches(straight_onset)}
-    return column | {kind: _moving(there, kind, straight_onset.force, up_to) for kind in _MOVING}
+        return {kind: unknown_intervals(kind, str(error)) for kind in ("straight", *_MOVING)}
+    column = {"straight": straight_intervals(straight_onset)}
+    return column | {kind: _moving(here, kind, straight_onset.force, up_to) for kind in _MOVING}
 
 
 def _moving(model: Model, kind: str, onset: float | None, up_to: float) -> StabilityIntervals:
     if kind == "spinning" and model.dimension != 3:
-        return nothing_known(kind, "a confined model cannot spin")
+        return unknown_intervals(kind, "a confined model cannot spin")
     if onset is None:
-        return nothing_known(kind, "the straight state stays stable")
+        return unknown_intervals(kind, "the straight state stays stable")
     try:
-        return moving_stretches(model, kind, onset, up_to)
+        return moving_intervals(model, kind, onset, up_to)
     except (InputError, ArithmeticError, np.linalg.LinAlgError) as error:
-        return nothing_known(kind, str(error))
+        return unknown_intervals(kind, str(error))

@@ -1,9 +1,10 @@
-"""Where along the force a state is stable: of one model, from its branches.
+"""Intervals of force on which a state of one model is stable, from its branches.
 
 The straight state loses stability at its Hopf point; spinning and flapping are followed from there
 on, with all their bifurcations.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,17 +13,15 @@ import numpy as np
 from undula.analysis.linear.results import Onset
 from undula.analysis.maps.states_at_forces import states_along
 from undula.analysis.parameters import FORCE
-from undula.analysis.solvers.branches import follow, follow_from_onset
-from undula.analysis.solvers.criticality import is_subcritical
+from undula.analysis.solvers.branches import follow
+from undula.analysis.solvers.upward_branch import START, branch_through_fold, first_bifurcation
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.follow_branch import Progress, unstable
 from undula.analysis.states.not_found import NotFound
 from undula.models.model import Model
 
-# Branches are judged from a little above the onset on, where their amplitude is no longer small.
-_BEGINNING = 1.02
-# Where so many disturbances of a state grow, it is not followed on: it would have to lose all of
-# them again, and meets many more bifurcations, each located, before it does.
+# Number of growing disturbances at which a branch is left: it would have to lose all of them again,
+# and meets many more bifurcations, each located, before it does.
 _MOST_GROWING = 6
 
 
@@ -33,7 +32,7 @@ class Change:
     Attributes
     ----------
     force, error : float
-        The force, and how exactly it was located on the links as they are.
+        The force, and the error to which it was located on the links as they are [B/L^2].
     frequency : float
         Of the state there [cycles per T].
     """
@@ -45,22 +44,21 @@ class Change:
 
 @dataclass(frozen=True)
 class StabilityIntervals:
-    """Where along the force a kind of state is stable.
+    """Intervals of force on which a kind of state is stable.
 
     Attributes
     ----------
     kind : {"straight", "spinning", "flapping"}
     begins : float or None
-        The least force at which there is such a state; None if there is none.
+        The least force at which there is such a state [B/L^2]; None if it does not exist.
     stable : tuple of (float, float)
-        Ends of the stretches of force on which it is stable, rising; the last may be infinite.
-    known_to : float
-        Up to this force its stability is known; 0 if nothing is.
+        Ends of the intervals of force on which it is stable, rising; the last may be infinite.
+    searched_to : float
+        Its stability is known up to this force; 0 if it is not known at any.
     fold, gained, lost : Change or None
-        Where its branch turns back, if it is born downwards; where it first becomes stable, and
-        where it first ceases to be.
+        The fold of a subcritical branch; the first gain of stability, and the first loss.
     reason : str or None
-        Why there is no such state, or no more is known.
+        Why there is no such state, or why the search ended.
     """
 
     kind: str
@@ -73,23 +71,23 @@ class StabilityIntervals:
     reason: str | None = None
 
     def is_stable_at(self, force: float) -> bool:
-        """Tell whether the state is stable at a force."""
+        """Return whether the state is stable at a force."""
         return any(low <= force <= high for low, high in self.stable)
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """All forces at which it begins, or gains or loses stability."""
-        ends = [end for stretch in self.stable for end in stretch if 0.0 < end < np.inf]
+        """All forces at which the state begins, or gains or loses stability."""
+        ends = [end for interval in self.stable for end in interval if 0.0 < end < np.inf]
         return tuple(sorted({*ends, *([] if self.begins is None else [self.begins])}))
 
 
-def nothing_known(kind: str, reason: str) -> StabilityIntervals:
-    """Return that nothing is known of a kind of state, and why."""
+def unknown_intervals(kind: str, reason: str) -> StabilityIntervals:
+    """Return the record of a kind of state whose stability is not known, with the reason."""
     return StabilityIntervals(kind, None, (), 0.0, reason=reason)
 
 
-def straight_stretches(onset: Onset) -> StabilityIntervals:
-    """Return where the straight state of the links as they are is stable."""
+def straight_intervals(onset: Onset) -> StabilityIntervals:
+    """Return the intervals on which the straight state of the links as they are is stable."""
     crossings = [*([onset.hopf] if onset.hopf else []), *onset.later]
     ends, growing = [0.0], 0
     for crossing in crossings:
@@ -106,10 +104,10 @@ def straight_stretches(onset: Onset) -> StabilityIntervals:
     return StabilityIntervals("straight", 0.0, stable, searched_to, lost=lost, reason=reason)
 
 
-def moving_stretches(
+def moving_intervals(
     model: Model, kind: str, onset: float, up_to: float, progress: Progress | None = None
 ) -> StabilityIntervals:
-    """Return where a state that moves is stable.
+    """Return the intervals on which a moving state is stable.
 
     Parameters
     ----------
@@ -117,78 +115,74 @@ def moving_stretches(
         Its own force does not matter.
     kind : {"spinning", "flapping"}
     onset : float
-        The force at which the straight state of the links as they are is lost.
+        The force at which the straight state of the links as they are is lost [B/L^2].
     up_to : float
-        The largest force of interest.
+        The largest force of interest [B/L^2].
     progress : callable, optional
         Called with each force that was reached.
+
+    Returns
+    -------
+    StabilityIntervals
     """
-    start = _BEGINNING * onset
-    begun = states_along(model, kind, [start]).get(start)
-    if begun is None or isinstance(begun, NotFound):
-        return nothing_known(kind, begun.reason if begun else f"no {kind} at force {start:.6g}")
-    born = _born_downwards(model, kind, start)
-    folds = [one for one in born.bifurcations if one.kind == "fold"] if born else []
-    fold = min(folds, key=lambda one: one.value, default=None)
+    start = START * onset
+    # One state of an unjudged branch: neither a run nor a guess is needed.
+    state = states_along(model, kind, [start]).get(start)
+    if state is None or isinstance(state, NotFound):
+        return unknown_intervals(kind, state.reason if state else f"no {kind} at force {start:.6g}")
+    folded = branch_through_fold(model, kind, start)
+    if isinstance(folded, NotFound) or (folded is not None and not folded.complete):
+        folded = None
+    folds = [point for point in folded.bifurcations if point.kind == "fold"] if folded else []
+    fold = min(folds, key=lambda point: point.value, default=None)
     branch = None
     if up_to > start:
-        followed = follow(begun, FORCE, up_to, progress=progress, enough=_hopeless)
+        followed = follow(state, FORCE, up_to, progress=progress, enough=_grows_too_much)
         if isinstance(followed, NotFound):
-            return nothing_known(kind, followed.reason)
+            return unknown_intervals(kind, followed.reason)
         branch = followed
-    changes = _changes(born) + _changes(branch)
+    changes = _changes(folded) + _changes(branch)
     begins = fold.value if fold else onset
     searched_to = start if branch is None else float(branch.values.max())
     complete = branch is None or branch.complete
     return StabilityIntervals(
         kind,
         begins,
-        # A branch that is born downwards is unstable until it turns.
-        _stretches(changes, begun.stable and not fold, begins),
+        # A subcritical branch is unstable until its fold.
+        _intervals(changes, begins, stable=state.stable and not fold),
         searched_to,
-        _told(fold),
-        _first(changes, "gains"),
-        _first(changes, "loses"),
-        None if complete else _left(branch, searched_to),
+        _change(fold),
+        _change(first_bifurcation(changes, lambda point: point.gains)),
+        _change(first_bifurcation(changes, lambda point: point.loses)),
+        None if complete else _why_left(branch, searched_to),
     )
 
 
-def _hopeless(bifurcation: Bifurcation[Any]) -> bool:
+def _grows_too_much(bifurcation: Bifurcation[Any]) -> bool:
     return bifurcation.unstable_after >= _MOST_GROWING
 
 
-def _left(branch: Branch[Any] | None, searched_to: float) -> str:
+def _why_left(branch: Branch[Any] | None, searched_to: float) -> str:
     growing = unstable(branch.states[-1]) if branch else 0
     why = f", where {growing} disturbances grow" if growing >= _MOST_GROWING else ""
     return f"the branch was not followed beyond force {searched_to:.6g}{why}"
 
 
-def _born_downwards(model: Model, kind: str, end: float) -> Branch[Any] | None:
-    """Return a branch from the Hopf point on, if it goes down there and comes up to the end."""
-    if not is_subcritical(model, kind):
-        return None
-    branch = follow_from_onset(model, kind, end)
-    return None if isinstance(branch, NotFound) or not branch.complete else branch
-
-
 def _changes(branch: Branch[Any] | None) -> list[Bifurcation[Any]]:
-    found = branch.bifurcations if branch else ()
-    return [one for one in found if one.gains or one.loses]
+    bifurcations = branch.bifurcations if branch else ()
+    return [point for point in bifurcations if point.gains or point.loses]
 
 
-def _stretches(
-    changes: list[Bifurcation[Any]], stable: bool, begins: float
+def _intervals(
+    changes: Sequence[Bifurcation[Any]], begins: float, *, stable: bool
 ) -> tuple[tuple[float, float], ...]:
+    """Return the stable intervals of a branch that is stable from its beginning on or not."""
     ends = [begins] if stable else []
-    ends += [one.value for one in changes]
+    ends += [point.value for point in changes]
     if len(ends) % 2:
         ends.append(np.inf)
     return tuple(zip(ends[::2], ends[1::2], strict=True))
 
 
-def _first(changes: list[Bifurcation[Any]], way: str) -> Change | None:
-    return _told(next((one for one in changes if getattr(one, way)), None))
-
-
-def _told(found: Bifurcation[Any] | None) -> Change | None:
-    return None if found is None else Change(found.value, found.error, found.frequency)
+def _change(point: Bifurcation[Any] | None) -> Change | None:
+    return None if point is None else Change(point.value, point.error, point.frequency)

@@ -1,7 +1,7 @@
-"""States of a kind at given forces, read off its branch, which is followed once.
+"""States of a kind at given forces, taken from its branch, which is followed once.
 
-The branch is followed from the Hopf point on by its arclength, and neither judged nor searched for
-bifurcations on the way: only where it comes up to one of the forces is a state solved for.
+The branch is followed from the Hopf point by its arclength, without judging its points or locating
+its bifurcations. A state is solved for only where the branch rises through one of the forces.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -9,25 +9,24 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from undula.analysis.parameters import FORCE
+from undula.analysis.solvers.reach_value import BranchStep, steps_along
 from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.states.follow_branch import UnresolvedError
 from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.arrays import Array
 from undula.models.model import Model
-from undula.numerics.continuation.arclength import Point, Steps, advance, follow, located, solved_at
+from undula.numerics.continuation.arclength import Point, Steps, advance, solved_at
 from undula.numerics.continuation.problem import Problem
 
 # Arclength between a Hopf point and the first point of a branch.
-_AWAY = 0.03
-# A branch that has not come to the last force after so many steps will hardly do so.
+_FIRST_STEP = 0.03
+# Number of steps after which a branch that has not reached the last force is given up.
 _MOST_STEPS = 1000
-# The way to the last force counts as so many units of length, and the Hopf force as one at least.
-_PARTS = 8.0
-# A branch that is born downwards has come up again below this multiple of the Hopf force.
-_UPWARDS = 1.5
-# Where Newton's method does not get from a step to a force in it, that force is approached to this
-# share of the scale first.
-_NEAR = 1e-3
+# The distance to the last force is at most this number of units of length; a unit is at most the
+# Hopf force.
+_UNITS = 8.0
+# A subcritical branch has risen through the onset again below this multiple of the Hopf force.
+_ABOVE_ONSET = 1.5
 
 
 def states_along(
@@ -36,10 +35,10 @@ def states_along(
     forces: Sequence[float],
     progress: Callable[[float], None] | None = None,
 ) -> dict[float, Any]:
-    """Return the states of a kind at forces, where its branch comes up to them.
+    """Return the states of a kind at forces through which its branch rises.
 
-    A branch that folds is read off where it goes upwards; where it does so more than once at a
-    force, a stable state is preferred to an unstable one.
+    Where the branch folds and rises through a force more than once, a stable state is preferred to
+    an unstable one.
 
     Parameters
     ----------
@@ -54,8 +53,8 @@ def states_along(
     Returns
     -------
     dict
-        For each force a state; or `NotFound`, if the branch ought to reach it and was not followed
-        so far; or no entry, where the branch begins beyond it.
+        For each force a state; or `NotFound`, if the branch was not followed to a force beyond the
+        onset; or no entry, where the branch begins beyond the force.
 
     Raises
     ------
@@ -63,87 +62,83 @@ def states_along(
         There is no such kind.
     """
     chosen = kind_by_name(kind)
-    began = chosen.start(model)
-    if began is None or not forces:
+    start = chosen.start(model)
+    if start is None or not forces:
         return {}
-    problem, hopf = began
+    problem, hopf = start
     last = max(forces)
-    scale = min(hopf.p, abs(last - hopf.p) / _PARTS) or hopf.p
-    reading = _Reading(forces, scale, chosen.judge(model, FORCE))
+    scale = min(hopf.p, abs(last - hopf.p) / _UNITS) or hopf.p
+    crossings = _Crossings(forces, scale, chosen.judge(model, FORCE))
     reached = hopf.p
     try:
-        for along, before, after in _steps(problem, hopf, last, scale):
-            reading.note(along, before, after)
-            reached = after.p
+        for step in _steps(problem, hopf, last, scale):
+            crossings.add(step)
+            reached = step.after.p
             if progress:
                 progress(reached)
     except UnresolvedError:
-        pass  # what was read off so far holds
+        pass  # the states found so far are valid
     followed = f"the branch of {kind} from force {hopf.p:.6g} on was followed to {reached:.6g}"
     missing = NotFound(SearchStatus.NOT_REACHED, followed)
-    return {force: missing for force in forces if force > hopf.p} | reading.preferred()
+    return {force: missing for force in forces if force > hopf.p} | crossings.preferred()
 
 
-def _steps(
-    problem: Problem, hopf: Point, last: float, scale: float
-) -> Iterator[tuple[Problem, Point, Point]]:
-    """Yield the steps of a branch until it has come up to the last force, with their problems."""
-    first = advance(problem, hopf, _AWAY, scale)
+def _steps(problem: Problem, hopf: Point, last: float, scale: float) -> Iterator[BranchStep]:
+    """Yield the steps of a branch until it has risen to the last force."""
+    first = advance(problem, hopf, _FIRST_STEP, scale)
     if first is None or (first.p > hopf.p and last <= hopf.p):
         return
-    yield problem, hopf, first
-    point, problem = first, problem.referred_to(first.u)
-    steps, ends = Steps(first=_AWAY, scale=scale), (0.0, max(last, _UPWARDS * hopf.p))
-    for count, reached in enumerate(follow(problem, point, steps, ends)):
-        yield problem, point, reached
-        if point.p < reached.p >= last or count > _MOST_STEPS:
+    yield BranchStep(problem, hopf, first)
+    steps, ends = Steps(first=_FIRST_STEP, scale=scale), (0.0, max(last, _ABOVE_ONSET * hopf.p))
+    for count, step in enumerate(steps_along(problem.referred_to(first.u), first, steps, ends)):
+        yield step
+        if step.before.p < step.after.p >= last or count > _MOST_STEPS:
             return
-        point, problem = reached, problem.referred_to(reached.u)
 
 
 @dataclass(frozen=True)
-class _Reading:
-    """States that steps of a branch pass on their way upwards, by force."""
+class _Crossings:
+    """States at the forces through which steps of a branch rise."""
 
     forces: Sequence[float]
     scale: float
     judge: Callable[[Any, Array, float], Any]
     states: dict[float, list[Any]] = field(default_factory=dict)
 
-    def note(self, problem: Problem, before: Point, after: Point) -> None:
+    def add(self, step: BranchStep) -> None:
         """Solve for the states at the forces that a step passes."""
         for force in self.forces:
-            if before.p < force <= after.p:
-                u = self._solution(problem, before, after, force)
+            if step.passes(force):
+                u = self._solution(step, force)
                 if u is not None:
-                    self.states.setdefault(force, []).append(self.judge(problem, u, force))
+                    self.states.setdefault(force, []).append(self.judge(step.problem, u, force))
 
     def preferred(self) -> dict[float, Any]:
-        """Return one state for each force, a stable one if there is one."""
+        """Return for each force a stable state, if the branch has one, else the first."""
         return {
             force: next((state for state in states if state.stable), states[0])
             for force, states in self.states.items()
         }
 
-    def _solution(
-        self, problem: Problem, before: Point, after: Point, force: float
-    ) -> Array | None:
-        """Return the solution at a force between two neighbours on a branch, if it is found."""
+    def _solution(self, step: BranchStep, force: float) -> Array | None:
+        """Return the solution at a force that a step passes, if there is one."""
+        before, after = step.before, step.after
         if force == after.p:
             return after.u
         share = (force - before.p) / (after.p - before.p)
-        solved = solved_at(problem, before.u + share * (after.u - before.u), force)
-        if solved is None or not _lies_between(problem, before, after, solved[0]):
-            near = located(problem, before, after, lambda at: at.p - force, self.scale, _NEAR)
-            solved = solved_at(problem, near.u, force) if near else None
-        return solved[0] if solved else None
+        # Many forces may lie in one step: a solve from the chord saves locating the branch at each.
+        solved = solved_at(step.problem, before.u + share * (after.u - before.u), force)
+        if solved is not None and _lies_between(step, solved[0]):
+            return solved[0]
+        return step.solution_at(force, self.scale)
 
 
-def _lies_between(problem: Problem, before: Point, after: Point, u: Array) -> bool:
-    """Tell whether a solution is about as near to two points as they are to one another.
+def _lies_between(step: BranchStep, u: Array) -> bool:
+    """Return whether a solution is about as near to both ends of a step as they are to each other.
 
     If not, Newton's method has led to another state.
     """
-    apart = problem.weights @ (after.u - before.u) ** 2
+    weights, ends = step.problem.weights, (step.before, step.after)
+    length = weights @ (step.after.u - step.before.u) ** 2
     # Steps turn by a right angle at most, so that no point between is farther than this.
-    return all(problem.weights @ (u - point.u) ** 2 <= 2.0 * apart for point in (before, after))
+    return all(weights @ (u - point.u) ** 2 <= 2.0 * length for point in ends)

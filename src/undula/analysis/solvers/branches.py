@@ -1,6 +1,7 @@
 """Branches of a kind of state along a parameter: from a state on, or from the onset on."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from undula.analysis.parameters import FORCE, value_of
@@ -144,6 +145,7 @@ def follow_from_onset(
     state = solver.judge(model, FORCE)(problem, first.u, first.p)
     family = solver.family(state, FORCE, scale)
     steps = Steps(first=_FIRST_ARCLENGTH, scale=scale)
-    return follow_branch(
+    branch = follow_branch(
         family, first.u, first.p, to, steps, progress, start=first, least=0.0, stop=stop
     )
+    return replace(branch, onset=hopf.p)

@@ -12,6 +12,7 @@ from typing import Self
 import numpy as np
 
 from undula.analysis.parameters import FORCE, changed, neighbours
+from undula.analysis.solvers.reach_value import reach_value
 from undula.analysis.states.follow_branch import Family
 from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.analysis.states.records import Equilibrium
@@ -20,14 +21,7 @@ from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.initial_states import from_state
 from undula.models.model import Model
-from undula.numerics.continuation.arclength import (
-    Point,
-    Steps,
-    follow,
-    located,
-    solved_at,
-    with_tangent,
-)
+from undula.numerics.continuation.arclength import Point, Steps, solved_at, with_tangent
 from undula.numerics.continuation.problem import Evaluation
 from undula.numerics.linalg.bordered import BorderedBand
 
@@ -35,8 +29,6 @@ from undula.numerics.linalg.bordered import BorderedBand
 _MOST_STEPS = 400
 # Change of the force that counts as 1 in steps from no load [B/L^2].
 _FORCE_SCALE = 40.0
-# Distance from the force at which Newton's method takes over, relative to that scale.
-_APPROACH = 1e-3
 
 
 @dataclass(frozen=True)
@@ -177,25 +169,17 @@ def _require_directors(model: Model) -> None:
 def _followed(problem: RestingShape) -> Equilibrium | NotFound:
     """Return the equilibrium at the model's force, on the branch from the unloaded shape."""
     target = problem.model.load.force
-    _, last = equilibrium_start(problem.model)
+    _, start = equilibrium_start(problem.model)
     if target == 0.0:
-        return equilibrium_state(problem, last.u, 0.0)
+        return equilibrium_state(problem, start.u, 0.0)
     steps = Steps(first=0.05, most=0.5, scale=_FORCE_SCALE)
     ends = min(0.0, 1.5 * target), max(0.0, 1.5 * target)
-    for count, point in enumerate(follow(problem, last, steps, ends)):
-        if last.p < target <= point.p:
-            near = located(
-                problem, last, point, lambda near: near.p - target, _FORCE_SCALE, _APPROACH
-            )
-            solved = near and solved_at(problem, near.u, target)
-            if solved:
-                return equilibrium_state(problem, solved[0], target)
-        last = point
-        if count > _MOST_STEPS:
-            break
+    reached = reach_value(problem, start, steps, ends, target, _MOST_STEPS)
+    if reached.u is not None:
+        return equilibrium_state(problem, reached.u, target)
     return NotFound(
         SearchStatus.NOT_REACHED,
-        f"the shape without load was followed to force {last.p:.6g} without coming up to"
+        f"the shape without load was followed to force {reached.p:.6g} without coming up to"
         f" {target:.6g}",
         "ask for a smaller force",
     )

@@ -8,6 +8,7 @@ from undula.analysis.linear.onset import first_pair
 from undula.analysis.linear.pencils import linearised
 from undula.analysis.parameters import FORCE, changed
 from undula.analysis.runs.run import Run
+from undula.analysis.solvers.reach_value import reach_value
 from undula.analysis.solvers.symmetry import require_space, require_turning
 from undula.analysis.states.follow_branch import Family
 from undula.analysis.states.not_found import NotFound, SearchStatus
@@ -21,14 +22,12 @@ from undula.arrays import Array, Nodes
 from undula.errors import InputError
 from undula.models.initial_states import from_state
 from undula.models.model import Model
-from undula.numerics.continuation.arclength import Point, Steps, follow, located, solved_at
+from undula.numerics.continuation.arclength import Point, Steps, solved_at
 
 # Largest number of steps along a branch towards a force.
 _MOST_STEPS = 400
 # Links with which a branch is followed if the model has more; its end alone is then refined.
 _FEW_LINKS = 20
-# Distance from the force at which Newton's method takes over, relative to the Hopf force.
-_APPROACH = 1e-3
 
 
 def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning | NotFound:
@@ -155,21 +154,15 @@ def _followed(model: Model) -> Spinning | NotFound:
             "the straight state stays stable, so that no spinning state begins at it",
         )
     problem, start = beginning
-    target, last = model.load.force, start
+    target = model.load.force
     steps = Steps(first=0.03, most=1.0, scale=start.p)
     ends = 0.0, max(target, 1.5 * start.p)
-    for count, point in enumerate(follow(problem, start, steps, ends)):
-        if last.p < target <= point.p:
-            near = located(problem, last, point, lambda near: near.p - target, start.p, _APPROACH)
-            solved = near and solved_at(problem, near.u, target)
-            if solved:
-                return spinning_state(problem, solved[0], target)
-        last, problem = point, problem.referred_to(point.u)
-        if count > _MOST_STEPS:
-            break
+    reached = reach_value(problem, start, steps, ends, target, _MOST_STEPS)
+    if reached.u is not None:
+        return spinning_state(reached.problem, reached.u, target)
     return NotFound(
         SearchStatus.NOT_REACHED,
-        f"the spinning branch begins at force {start.p:.6g} and was followed to {last.p:.6g}"
+        f"the spinning branch begins at force {start.p:.6g} and was followed to {reached.p:.6g}"
         f" without coming up to {target:.6g}",
         "ask for a larger force, or give a run that spins as a guess",
     )

@@ -1,8 +1,8 @@
 """The search for a threshold: the branch of a state followed from its beginning up to a force.
 
-A branch that is born downwards is followed from the onset through its fold, where it begins; others
-from a little above the onset. What lies further up is followed in stretches, each of them twice as
-long as all before, so that the steps do not grow with the way that is asked for.
+A subcritical branch is followed from the onset through its fold first, others from a little above
+the onset. Larger forces are reached in pieces, each of them as long as all before, so that the
+steps do not grow with the force that is asked for.
 """
 
 from collections.abc import Iterator, Mapping
@@ -11,34 +11,40 @@ from typing import Any
 
 from undula.analysis.linear.stability import onset
 from undula.analysis.parameters import FORCE, changed
-from undula.analysis.solvers.branches import follow, follow_from_onset
-from undula.analysis.solvers.criticality import is_subcritical
+from undula.analysis.solvers.branches import follow
 from undula.analysis.solvers.refind import refind_bifurcation
 from undula.analysis.solvers.state_kinds import Solved, kind_by_name
 from undula.analysis.solvers.symmetry import require_space, require_turning
+from undula.analysis.solvers.upward_branch import START, branch_through_fold, first_bifurcation
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.follow_branch import Progress
 from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.models.model import Model
 
-#: Forces up to which thresholds are looked for by default, in multiples of that of the onset.
+#: Force up to which thresholds are searched by default, in multiples of the onset.
 FARTHEST = 20.0
-# Branches of states begin a little above the onset, where their amplitude is no longer small.
-_BEGINNING = 1.02
-# The force of the onset of the tip load, about, which stands for that of what rests [B/L^2].
+# Typical onset of the tip load, in place of that of a state at rest [B/L^2].
 _ONSET_AT_REST = 38.0
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """Which bifurcation of which kind of state a threshold is, and what the state does there."""
+    """The bifurcation that a threshold is.
+
+    Attributes
+    ----------
+    kind : str
+        Kind of the state.
+    does : {"gains", "loses"}
+        Change of the state's stability.
+    """
 
     kind: str
     does: str
 
-    def is_it(self, one: Bifurcation[Any]) -> bool:
-        """Tell whether a bifurcation is the threshold."""
-        return one.gains if self.does == "gains" else one.loses
+    def is_it(self, bifurcation: Bifurcation[Any]) -> bool:
+        """Return whether a bifurcation is the threshold."""
+        return bifurcation.gains if self.does == "gains" else bifurcation.loses
 
 
 WANTED: Mapping[str, Wanted] = {
@@ -56,7 +62,7 @@ class Missed(NotFound):
     Attributes
     ----------
     searched_to : float or None
-        Where the search ended [B/L^2]; None where it could not have gone on.
+        Force at which the search ended [B/L^2]; None where it could not have gone on.
     """
 
     searched_to: float | None = None
@@ -69,7 +75,7 @@ def search(
     up_to: float | None,
     progress: Progress | None,
 ) -> Bifurcation[Any] | NotFound:
-    """Return the first bifurcation that is a threshold, looked for near a known one first.
+    """Return the first bifurcation that is a threshold; next to a known one, if it is there.
 
     Parameters
     ----------
@@ -82,24 +88,34 @@ def search(
         The largest force of interest [B/L^2].
     progress : callable or None
         Called with each force that was reached.
+
+    Returns
+    -------
+    Bifurcation or NotFound
+
+    Raises
+    ------
+    InputError
+        The model cannot have the states of the threshold.
     """
     check(model, wanted)
     if near is not None:
-        found = refind_bifurcation(near, model, FORCE, wanted.is_it, progress)
-        if not isinstance(found, NotFound) and (up_to is None or found.value <= up_to):
-            return found
+        again = refind_bifurcation(near, model, FORCE, wanted.is_it, progress)
+        if not isinstance(again, NotFound) and (up_to is None or again.value <= up_to):
+            return again
     ends = _ends(model, wanted.kind, up_to)
     if isinstance(ends, NotFound):
         return ends
-    seen = _Seen(wanted.kind)
-    for branch in _branches(model, wanted, ends, progress):
+    searched = _Searched(wanted.kind)
+    for branch in _pieces(model, wanted, ends, progress):
         if isinstance(branch, NotFound):
             return branch
-        seen = seen.beyond(branch, ends[1])
-        for bifurcation in branch.bifurcations:
-            if wanted.is_it(bifurcation) and bifurcation.value <= ends[1]:
-                return bifurcation
-    return seen.missed(wanted.does)
+        searched = searched.beyond(branch, ends[1])
+        reachable = [point for point in branch.bifurcations if point.value <= ends[1]]
+        bifurcation = first_bifurcation(reachable, wanted.is_it)
+        if bifurcation is not None:
+            return bifurcation
+    return searched.missed(wanted.does)
 
 
 def check(model: Model, wanted: Wanted) -> None:
@@ -117,56 +133,68 @@ def _ends(model: Model, kind: str, up_to: float | None) -> tuple[float, float] |
     straight_onset = onset(model, method="discrete", later=0)
     if straight_onset.force is None:
         return NotFound(SearchStatus.NO_ONSET, str(straight_onset))
-    return _BEGINNING * straight_onset.force, up_to or FARTHEST * straight_onset.force
+    return START * straight_onset.force, up_to or FARTHEST * straight_onset.force
 
 
-def _branches(
+def _pieces(
     model: Model, wanted: Wanted, ends: tuple[float, float], progress: Progress | None
 ) -> Iterator[Branch[Any] | NotFound]:
-    """Yield the branch of a kind of state in pieces, upwards from where it begins."""
+    """Yield the branch of a kind of state in pieces, upwards from its beginning."""
     start, end = ends
-    if wanted.kind != "equilibrium" and is_subcritical(model, wanted.kind):
-        born = follow_from_onset(model, wanted.kind, start, progress=progress)
-        if isinstance(born, NotFound):
-            yield born
+    if wanted.kind != "equilibrium":
+        folded = branch_through_fold(model, wanted.kind, start, progress)
+        if folded is not None:
+            yield folded
+            if isinstance(folded, NotFound) or not folded.complete or end <= start:
+                return
+        elif end <= start:
+            yield Missed(
+                SearchStatus.ABSENT,
+                f"{wanted.kind} begins at the onset, at force {start / START:.6g}, beyond which was"
+                " not searched",
+                searched_to=end,
+            )
             return
-        yield born
-        if not born.complete or end <= start:
-            return
-    elif end <= start:
-        onset = start / _BEGINNING
-        yield Missed(
-            SearchStatus.ABSENT,
-            f"{wanted.kind} begins at the onset, at force {onset:.6g}, beyond which was not"
-            " searched",
-            searched_to=end,
-        )
-        return
     state: Solved | NotFound = kind_by_name(wanted.kind).find(changed(model, FORCE, start))
     first = (start or _ONSET_AT_REST) * FARTHEST
-    for place in _stretches(start, min(first, end), end):
+    for force in _doubling(start, min(first, end), end):
         if isinstance(state, NotFound):
             yield state
             return
-        branch = follow(state, FORCE, place, progress=progress, enough=wanted.is_it)
+        branch = follow(state, FORCE, force, progress=progress, enough=wanted.is_it)
         yield branch
         if isinstance(branch, NotFound) or not branch.complete:
             return
         state = branch.states[-1]
 
 
-def _stretches(start: float, first: float, end: float) -> Iterator[float]:
-    """Yield where stretches of a way end, each as long as all before; the last one at its end."""
-    place = first
-    while place < end:
-        yield place
-        place += place - start
+def _doubling(start: float, first: float, end: float) -> Iterator[float]:
+    """Yield the ends of pieces, each as long as all before; the last one at the end."""
+    force = first
+    while force < end:
+        yield force
+        force += force - start
     yield end
 
 
 @dataclass(frozen=True)
-class _Seen:
-    """What was seen of a branch without the threshold on it."""
+class _Searched:
+    """Stability along the part of a branch that was searched without the threshold on it.
+
+    Attributes
+    ----------
+    kind : str
+    begins : float
+        Least force.
+    stable : bool
+        Whether the branch is stable where it begins.
+    changed_at : float or None
+        Force of the first gain or loss of stability.
+    reached : float or None
+        Greatest force; None before anything was searched.
+    complete : bool
+        Whether the branch could be followed on.
+    """
 
     kind: str
     begins: float = 0.0
@@ -175,16 +203,16 @@ class _Seen:
     reached: float | None = None
     complete: bool = True
 
-    def beyond(self, branch: Branch[Any], end: float) -> "_Seen":
-        """Return this with what a further piece of the branch shows up to a force."""
-        folds = [one.value for one in branch.bifurcations if one.kind == "fold"]
+    def beyond(self, branch: Branch[Any], end: float) -> "_Searched":
+        """Return the record extended by a further piece of the branch, up to a force."""
+        folds = [point.value for point in branch.bifurcations if point.kind == "fold"]
         changes = [
-            one.value
-            for one in branch.bifurcations
-            if (one.gains or one.loses) and one.value <= end
+            point.value
+            for point in branch.bifurcations
+            if (point.gains or point.loses) and point.value <= end
         ]
         first = self.reached is None
-        return _Seen(
+        return _Searched(
             kind=self.kind,
             begins=min([float(branch.values[0]), *folds]) if first else self.begins,
             stable=branch.states[0].stable if first else self.stable,
@@ -194,7 +222,7 @@ class _Seen:
         )
 
     def missed(self, does: str) -> Missed:
-        """Return that there is no threshold, in a sentence for what was seen instead."""
+        """Return the failure, with a sentence for the stability that there is instead."""
         finding = self._sentence(does)
         if self.complete:
             return Missed(SearchStatus.ABSENT, finding, searched_to=self.reached)

@@ -1,4 +1,4 @@
-"""Forces at which a state gains or loses stability, without a single run.
+"""Forces at which a state gains or loses stability, without a run in time.
 
 - `onset`: the straight state is lost (a Hopf point), of a curved filament the bent state at rest;
 - `spinning-lost`: the spinning branch, followed up from its beginning, loses stability;
@@ -7,7 +7,6 @@
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -15,7 +14,8 @@ from undula.analysis.linear.results import Method, Onset
 from undula.analysis.linear.stability import method_for_all, onset
 from undula.analysis.parameters import FORCE, changed
 from undula.analysis.solvers.refind import alike, quantities_of, refind_bifurcation
-from undula.analysis.solvers.threshold_search import WANTED, Missed, search
+from undula.analysis.solvers.threshold_record import Threshold, without_value
+from undula.analysis.solvers.threshold_search import WANTED, search
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation
 from undula.analysis.states.extrapolation import converge, error_of_links
@@ -25,64 +25,6 @@ from undula.errors import InputError, is_number
 from undula.models.model import Model
 
 THRESHOLDS: tuple[str, ...] = tuple(WANTED)
-
-
-@dataclass(frozen=True)
-class Threshold:
-    """A force at which stability changes.
-
-    Attributes
-    ----------
-    kind : str
-    value : float or None
-        The force [B/L^2]: of the body if `links` are several or none, else on these links. None if
-        there is none.
-    error : float or None
-        Its estimated error against the body that the numbers stand for, of links and solver
-        together; None if that could not be told.
-    frequency : float or None
-        Of the state there [cycles per T].
-    second_frequency : float or None
-        Of the disturbance that turns [cycles per T].
-    bifurcation : str or None
-        The kind of bifurcation.
-    reason : str or None
-        Why there is no value.
-    at : Bifurcation or None
-        The bifurcation itself, on the finest links.
-    links : tuple of int
-        The numbers of links that it was solved for with; none for the method of the continuum.
-    solver_error : float or None
-        How exactly it was solved for on these links.
-    searched_to : float or None
-        The force at which the search ended without it, where a farther one might find it.
-    """
-
-    kind: str
-    value: float | None
-    error: float | None = None
-    frequency: float | None = None
-    second_frequency: float | None = None
-    bifurcation: str | None = None
-    reason: str | None = None
-    at: Bifurcation[Any] | None = None
-    links: tuple[int, ...] = ()
-    solver_error: float | None = None
-    searched_to: float | None = None
-
-    def __str__(self) -> str:
-        """Tell it in one line."""
-        if self.value is None:
-            farther = "" if self.searched_to is None else "; a larger up_to looks farther"
-            return f"no {self.kind}: {self.reason}{farther}"
-        apart = "" if self.error is None else f" +- {self.error:.1g}"
-        links = ""
-        if len(self.links) == 1 and self.error != self.solver_error:
-            links = f" ({self.links[0]} links, solved to {self.solver_error:.1g})"
-        return (
-            f"{self.kind} at force {self.value:.10g}{apart}{links}, {self.bifurcation},"
-            f" {self.frequency:.8g} cycles per T"
-        )
 
 
 def threshold(
@@ -105,7 +47,7 @@ def threshold(
     converged : bool
         Whether to extrapolate to many links.
     near : Threshold, optional
-        The same threshold of a similar model, to begin at.
+        The same threshold of a similar model, next to which it is searched for first.
     up_to : float, optional
         The force at which the search ends [B/L^2], above 0; by default 20 times that of the onset.
     method : {"spectral", "modes", "discrete"}, optional
@@ -113,11 +55,26 @@ def threshold(
     progress : callable, optional
         Called with the number of links and each force that was reached.
 
+    Returns
+    -------
+    Threshold
+        Without a value, but with a reason, if the search ends without it.
+
     Raises
     ------
     InputError
-        The kind is none of these, the model cannot have such a state or has no limit of many links,
-        or `up_to` is out of range.
+        The kind is not one of these, the model cannot have such a state or has no limit of many
+        links, or `up_to` is out of range.
+
+    Examples
+    --------
+    The straight filament under a tip load is lost at the force of De Canio, Lauga & Goldstein,
+    J. R. Soc. Interface 14 (2017) 20170491:
+
+    >>> import undula as un
+    >>> onset = un.threshold(un.Filament(40, un.TipLoad(75.0)), "onset")
+    >>> round(onset.value, 4), onset.bifurcation
+    (37.6948, 'Hopf')
     """
     _check_kind(kind)
     if up_to is not None and not (is_number(up_to) and up_to > 0.0):
@@ -126,22 +83,22 @@ def threshold(
         return _onset(model, method, up_to, converged=converged)
     guess = near.at if near else None
 
-    def look(finer: Model, known: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
-        told = partial(progress, finer.links) if progress else None
-        return search(finer, WANTED[kind], known or guess, up_to, told)
+    def solve(finer: Model, coarser: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
+        reached = partial(progress, finer.links) if progress else None
+        return search(finer, WANTED[kind], coarser or guess, up_to, reached)
 
     if not converged:
-        found = look(model, None)
-        if isinstance(found, NotFound):
-            return _none(kind, found)
-        by_links = _error_of_links(found, model)
-        error = None if by_links is None else by_links + found.error
-        return _threshold(kind, found, _numbers(found), error, (model.links,), found.error)
-    limit = converge(model, look, _numbers)
+        point = solve(model, None)
+        if isinstance(point, NotFound):
+            return without_value(kind, point)
+        by_links = _error_of_links(point, model)
+        error = None if by_links is None else by_links + point.error
+        return _threshold(kind, point, _numbers(point), error, (model.links,), point.error)
+    limit = converge(model, solve, _numbers)
     if isinstance(limit, NotFound):
-        return _none(kind, limit)
-    at, error = limit.finest, limit.errors["value"] + limit.finest.error
-    return _threshold(kind, at, limit.values, error, limit.links, at.error)
+        return without_value(kind, limit)
+    error = limit.errors["value"] + limit.finest.error
+    return _threshold(kind, limit.finest, limit.values, error, limit.links, limit.finest.error)
 
 
 def threshold_curve(
@@ -155,22 +112,42 @@ def threshold_curve(
     progress: Callable[[int, int], None] | None = None,
     stop: Callable[[], bool] = lambda: False,
 ) -> tuple[Threshold, ...]:
-    """Return a threshold at each value of a second parameter, each begun at the one before.
+    """Return a threshold at each value of a second parameter, each searched next to the last.
 
-    All are of one kind: an onset is computed by the links at every value if the method of the
-    continuum does not hold at each, unless all are taken to the limit of many links.
+    All onsets are computed by one method: on the links at every value if the method of the
+    continuum does not apply at each, unless all are taken to the limit of many links.
 
     Parameters
     ----------
     model, kind, converged, up_to
         As in `threshold`.
     parameter : str
-        Name of the parameter, such as "model.drag_ratio"; the force is none.
+        Name of the parameter, such as "model.drag_ratio"; not the force.
     values : sequence of float
+        At least one.
     progress : callable, optional
         Called with the number of values done and of all.
     stop : callable, optional
-        Tells whether to end with the values done so far.
+        Returns whether to end with the values done so far.
+
+    Returns
+    -------
+    tuple of Threshold
+        One for each value, fewer if stopped.
+
+    Raises
+    ------
+    InputError
+        The parameter is the force or is not known, a value is out of its range, or as in
+        `threshold`.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(40, un.TipLoad(75.0))
+    >>> onsets = un.threshold_curve(model, "onset", "model.drag_ratio", [1.5, 2.0])
+    >>> [round(onset.value, 4) for onset in onsets]
+    [37.6948, 37.6948]
     """
     if parameter == FORCE:
         raise InputError(f"thresholds are values of {FORCE}; take another parameter for a curve")
@@ -178,17 +155,17 @@ def threshold_curve(
     shared = model_along(model, WANTED[kind].kind, parameter, values)
     models = [changed(shared, parameter, value) for value in values]
     method = None if converged else method_for_all(models)
-    found: list[Threshold] = []
-    for done, each in enumerate(models, start=1):
-        near = found[-1] if found and found[-1].value is not None else None
-        found.append(
-            threshold(each, kind, converged=converged, near=near, up_to=up_to, method=method)
+    curve: list[Threshold] = []
+    for done, here in enumerate(models, start=1):
+        near = curve[-1] if curve and curve[-1].value is not None else None
+        curve.append(
+            threshold(here, kind, converged=converged, near=near, up_to=up_to, method=method)
         )
         if progress:
             progress(done, len(models))
         if stop():
             break
-    return tuple(found)
+    return tuple(curve)
 
 
 def _check_kind(kind: str) -> None:
@@ -204,7 +181,7 @@ def _onset(
     if converged and model.continuum_load is None and model.with_links(2 * model.links) is not None:
         limit = converge(model, lambda finer, _: _crossing_of(finer), _of_crossing)
         if isinstance(limit, NotFound):
-            return _none("onset", limit)
+            return without_value("onset", limit)
         straight_onset, links = limit.finest, limit.links
         force, frequency = limit.values["value"], limit.values["frequency"]
         error = limit.errors["value"]
@@ -242,47 +219,42 @@ def _crossing_of(model: Model) -> Onset | NotFound:
 
 
 def _of_crossing(onset: Onset) -> dict[str, float]:
-    assert onset.hopf is not None  # others are none
+    assert onset.hopf is not None  # as `_crossing_of` returns it
     return {"value": onset.hopf.force, "frequency": onset.hopf.frequency}
 
 
-def _none(kind: str, found: NotFound) -> Threshold:
-    searched_to = found.searched_to if isinstance(found, Missed) else None
-    return Threshold(kind, None, reason=found.reason, searched_to=searched_to)
-
-
-def _error_of_links(found: Bifurcation[Any], model: Model) -> float | None:
+def _error_of_links(point: Bifurcation[Any], model: Model) -> float | None:
     def again(other: Model) -> float | None:
-        same = refind_bifurcation(found, other, FORCE, lambda one: alike(one, found))
+        same = refind_bifurcation(point, other, FORCE, lambda candidate: alike(candidate, point))
         return None if isinstance(same, NotFound) else same.value
 
-    return error_of_links(model, found.value, again)
+    return error_of_links(model, point.value, again)
 
 
-def _numbers(found: Bifurcation[Any]) -> dict[str, float]:
-    # A real exponent is one whose second frequency is 0.
-    return {"second_frequency": 0.0} | quantities_of(found)
+def _numbers(point: Bifurcation[Any]) -> dict[str, float]:
+    # A real exponent has a second frequency of 0.
+    return {"second_frequency": 0.0} | quantities_of(point)
 
 
 def _threshold(
     kind: str,
-    at: Bifurcation[Any],
+    point: Bifurcation[Any],
     numbers: Mapping[str, float],
     error: float | None,
     links: tuple[int, ...],
     solver_error: float,
 ) -> Threshold:
     frequency, second = numbers["frequency"], numbers["second_frequency"] or None
-    if isinstance(at.state, Equilibrium):
-        frequency, second = second or 0.0, None  # what rests begins to swing
+    if isinstance(point.state, Equilibrium):
+        frequency, second = second or 0.0, None  # a state at rest begins to swing
     return Threshold(
         kind,
         numbers["value"],
         error,
         frequency,
         second,
-        at.kind,
-        at=at,
+        point.kind,
+        at=point,
         links=links,
         solver_error=solver_error,
     )

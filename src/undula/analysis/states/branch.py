@@ -1,7 +1,7 @@
 """Records of a branch of states along a parameter and of its bifurcations."""
 
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, Literal, TypeVar
 
 from undula.analysis.states.state import State
 from undula.arrays import Array
@@ -48,6 +48,11 @@ class Bifurcation(Generic[S]):
         """True if the state is stable after and not before."""
         return self.unstable_after == 0 < self.unstable_before
 
+    @property
+    def stability(self) -> Literal["lost", "gained", "unchanged"]:
+        """Change of the state's stability, in the direction of following."""
+        return "lost" if self.loses else "gained" if self.gains else "unchanged"
+
 
 @dataclass(frozen=True)
 class Branch(Generic[S]):
@@ -65,6 +70,9 @@ class Branch(Generic[S]):
         Bifurcations between the states.
     complete : bool
         True if the branch reached the value that was asked for.
+    onset : float or None
+        The value at the Hopf point of the straight state, if the branch was followed from there:
+        its first state lies a little off that point.
     """
 
     parameter: str
@@ -72,3 +80,14 @@ class Branch(Generic[S]):
     states: tuple[S, ...]
     bifurcations: tuple[Bifurcation[S], ...]
     complete: bool
+    onset: float | None = None
+
+    @property
+    def criticality(self) -> Literal["subcritical", "supercritical"] | None:
+        """Direction in which the branch leaves the onset; None if it was not followed from there.
+
+        A subcritical branch exists below the onset first, a supercritical one beyond it only.
+        """
+        if self.onset is None or len(self.values) < 2:
+            return None
+        return "subcritical" if self.values[1] < self.values[0] else "supercritical"

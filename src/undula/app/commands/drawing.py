@@ -9,7 +9,7 @@ import xarray as xr
 
 from undula.analysis.linear.results import GrowthCurve
 from undula.analysis.linear.straight_branch import StraightBranch
-from undula.analysis.solvers.thresholds import Threshold
+from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.states.branch import Branch
 from undula.errors import InputError
 from undula.storage.outputs import Claim

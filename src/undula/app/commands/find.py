@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from undula.analysis.observables.shapes import Range
 from undula.analysis.solvers.state_kinds import Solved, extrapolate, kind_by_name, with_error
+from undula.analysis.states.branch_json import extents_as_json
 from undula.analysis.states.extrapolation import Converged, links_are_body
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
@@ -79,21 +79,12 @@ def state_answer(state: Solved) -> dict[str, Any]:
         "residual": state.residual,
         "power_balance_error": state.power_balance_error,
     }
-    if isinstance(state, Spinning | Equilibrium):
-        steady = {
-            "bending_energy": state.bending_energy.mean,
-            "tip_radius": state.tip_radius.mean,
-            "tip_height": state.tip_height.mean,
-        }
-        if isinstance(state, Equilibrium):
-            return shared | {"kind": "equilibrium"} | steady
-        return shared | {"kind": "spinning"} | steady | {"trivial_rate": abs(state.trivial)}
-    swinging = {
-        "bending_energy": _range(state.bending_energy),
-        "tip_radius": _range(state.tip_radius),
-        "tip_height": _range(state.tip_height),
-        "trivial_multiplier_error": max(state.trivial),
-    }
+    extents = extents_as_json(state)
+    if isinstance(state, Equilibrium):
+        return shared | {"kind": "equilibrium"} | extents
+    if isinstance(state, Spinning):
+        return shared | {"kind": "spinning"} | extents | {"trivial_rate": abs(state.trivial)}
+    swinging = extents | {"trivial_multiplier_error": max(state.trivial)}
     if isinstance(state, Periodic):
         period = {
             "period": state.period,
@@ -128,10 +119,6 @@ def _limit_answer(limit: Converged[Any]) -> dict[str, Any]:
         "error": error,
         "errors": {**limit.errors, "frequency": error},
     }
-
-
-def _range(values: Range) -> dict[str, float]:
-    return {"min": values.min, "max": values.max, "mean": values.mean}
 
 
 def _links(links: int | list[int], *, body: bool) -> str:

@@ -1,4 +1,4 @@
-"""`undula follow`: a branch of states along a parameter, in plain JSON types and for people."""
+"""`undula follow`: a branch of states along a parameter, in plain JSON types and as text."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,9 +11,10 @@ from undula.analysis.solvers.refind import limit_of
 from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation, Branch
+from undula.analysis.states.branch_json import bifurcation_as_json, points_as_json
 from undula.analysis.states.extrapolation import Converged, links_are_body
 from undula.analysis.states.not_found import NotFound
-from undula.app.commands.find import not_found, state_answer
+from undula.app.commands.find import not_found
 from undula.errors import InputError
 from undula.interrupts import interruptible
 from undula.models.model import Model
@@ -23,22 +24,20 @@ from undula.terminal.output import Answer
 from undula.terminal.progress import approached
 from undula.terminal.units_text import force_in, units_lines
 
-#: What is told of each point of a branch.
-_KEPT = (
-    "frequency",
-    "bending_energy",
-    "tip_radius",
-    "tip_height",
-    "stable",
-    "leading_rate",
-    "leading_rate_in_plane",
-    "leading_rate_out_of_plane",
-)
-
 
 @dataclass(frozen=True)
-class Way:
-    """A parameter, and the values at which to begin, None for the onset, and to end."""
+class ParameterInterval:
+    """The interval of a parameter along which a state is followed.
+
+    Attributes
+    ----------
+    parameter : str
+        Its name.
+    start : float or None
+        The first value; None for the onset.
+    end : float
+        The last value.
+    """
 
     parameter: str
     start: float | None
@@ -46,84 +45,97 @@ class Way:
 
 
 def follow_along(
-    model: Model, kind: str, way: Way, *, converge: bool, title: str
+    model: Model, kind: str, interval: ParameterInterval, *, converge: bool, title: str
 ) -> tuple[Answer, Branch[Any] | StraightBranch | None]:
-    """Follow a state; return the answer, and the branch unless there is no state to begin at.
+    """Follow a state along a parameter.
+
+    Parameters
+    ----------
+    model : Model
+        Its own value of the parameter does not matter.
+    kind : str
+        Kind of state, or "straight".
+    interval : ParameterInterval
+    converge : bool
+        Whether to take bifurcations to the limit of many links.
+    title : str
+        Beginning of the text.
+
+    Returns
+    -------
+    tuple of Answer and (Branch, StraightBranch or None)
+        The branch is None if there is no state to begin at.
 
     Raises
     ------
     InputError
         There is no such kind or parameter, or a value is out of its range.
     """
-    value_of(model, way.parameter)
+    value_of(model, interval.parameter)
     if kind == "straight":
-        return _straight(model, way, converge=converge, title=title)
+        return _straight(model, interval, converge=converge, title=title)
     with interruptible() as interrupted:
-        if way.start is None:
-            found = _from_onset(model, kind, way, interrupted)
+        if interval.start is None:
+            branch = _from_onset(model, kind, interval, interrupted)
         else:
-            found = _between(model, kind, way, way.start, interrupted)
+            branch = _between(model, kind, interval, interval.start, interrupted)
         early = interrupted()
-    if isinstance(found, NotFound):
-        return not_found(found, f"{title}: {kind}", model.units), None
-    answer = branch_answer(found, model.units, converge=converge and not early)
+    if isinstance(branch, NotFound):
+        return not_found(branch, f"{title}: {kind}", model.units), None
+    answer = branch_answer(branch, model.units, converge=converge and not early)
     if early:
         answer["status"] = "interrupted"
-    if way.start is None and len(found.values) > 1:
-        answer["birth"] = "subcritical" if found.values[1] < found.values[0] else "supercritical"
-    return _told(answer, f"{title}: {kind}", model.units), found
+    return _with_text(answer, f"{title}: {kind}", model.units), branch
 
 
 def _straight(
-    model: Model, way: Way, *, converge: bool, title: str
+    model: Model, interval: ParameterInterval, *, converge: bool, title: str
 ) -> tuple[Answer, StraightBranch]:
     if converge:
         raise InputError("the straight state is converged already; leave --converge out")
-    if way.start is None:
+    if interval.start is None:
         raise InputError("the straight state ends at its onset; give a number to start at")
-    straight = follow_straight(model, way.parameter, way.start, way.end)
+    straight = follow_straight(model, interval.parameter, interval.start, interval.end)
     answer = straight_answer(straight, model)
-    return _told(answer, f"{title}: straight state", model.units), straight
+    return _with_text(answer, f"{title}: straight state", model.units), straight
 
 
 def _from_onset(
-    model: Model, kind: str, way: Way, stop: Callable[[], bool]
+    model: Model, kind: str, interval: ParameterInterval, stop: Callable[[], bool]
 ) -> Branch[Any] | NotFound:
-    if way.parameter != FORCE:
-        raise InputError(f"an onset is a value of {FORCE}; start {way.parameter} at a number")
-    with approached(f"following {kind}", 0.0, way.end) as tell:
-        return follow_from_onset(model, kind, way.end, progress=tell, stop=stop)
+    if interval.parameter != FORCE:
+        raise InputError(f"an onset is a value of {FORCE}; start {interval.parameter} at a number")
+    with approached(f"following {kind}", 0.0, interval.end) as progress:
+        return follow_from_onset(model, kind, interval.end, progress=progress, stop=stop)
 
 
 def _between(
-    model: Model, kind: str, way: Way, start: float, stop: Callable[[], bool]
+    model: Model, kind: str, interval: ParameterInterval, start: float, stop: Callable[[], bool]
 ) -> Branch[Any] | NotFound:
     chosen = kind_by_name(kind)
-    along = model_along(model, kind, way.parameter, (start, way.end))
-    begun = chosen.find(changed(along, way.parameter, start))
-    if isinstance(begun, NotFound):
-        return begun
-    with approached(f"following {kind}", start, way.end) as tell:
-        return follow(begun, way.parameter, way.end, progress=tell, stop=stop)
+    along = model_along(model, kind, interval.parameter, (start, interval.end))
+    state = chosen.find(changed(along, interval.parameter, start))
+    if isinstance(state, NotFound):
+        return state
+    with approached(f"following {kind}", start, interval.end) as progress:
+        return follow(state, interval.parameter, interval.end, progress=progress, stop=stop)
 
 
 def branch_answer(branch: Branch[Any], units: Units, *, converge: bool) -> dict[str, Any]:
-    """Return a branch in plain JSON types, its bifurcations in the limit of many links if asked."""
-    points = []
-    for value, state in zip(branch.values, branch.states, strict=True):
-        told = state_answer(state)
-        kept = {key: told[key] for key in _KEPT if key in told}
-        points.append({branch.parameter: float(value)} | kept)
-    return {
+    """Return a branch in plain JSON types; `converge` takes its bifurcations to many links."""
+    answer: dict[str, Any] = {
         "status": "done" if branch.complete else "stopped early",
         "units": units.names(),
         "parameter": branch.parameter,
-        "points": points,
+        "points": points_as_json(branch),
         "bifurcations": [
-            _with_force(_bifurcation_answer(branch.parameter, one, converge=converge), units)
-            for one in branch.bifurcations
+            _with_force(_bifurcation_answer(branch.parameter, point, converge=converge), units)
+            for point in branch.bifurcations
         ],
     }
+    if branch.criticality is not None:
+        answer |= {"birth": branch.criticality, "onset": branch.onset}
+    return answer
 
 
 def straight_answer(branch: StraightBranch, model: Model) -> dict[str, Any]:
@@ -162,23 +174,16 @@ def straight_answer(branch: StraightBranch, model: Model) -> dict[str, Any]:
     }
 
 
-def _bifurcation_answer(parameter: str, one: Bifurcation[Any], *, converge: bool) -> dict[str, Any]:
-    answer = {
-        "kind": one.kind,
-        "value": one.value,
-        parameter: one.value,
-        "error": one.error,
-        "error_of": BODY if links_are_body(one.state.model) else LINKS,
-        "links": one.state.model.links,
-        "frequency": one.frequency,
-        "second_frequency": one.second_frequency,
-        "stability": "lost" if one.loses else "gained" if one.gains else "unchanged",
-    }
-    limit = limit_of(one, parameter) if converge else None
+def _bifurcation_answer(
+    parameter: str, bifurcation: Bifurcation[Any], *, converge: bool
+) -> dict[str, Any]:
+    error_of = BODY if links_are_body(bifurcation.state.model) else LINKS
+    answer = bifurcation_as_json(parameter, bifurcation, error_of=error_of)
+    limit = limit_of(bifurcation, parameter) if converge else None
     if isinstance(limit, Converged):
         answer |= dict(limit.values) | {
             parameter: limit.values["value"],
-            "error": limit.errors["value"] + one.error,
+            "error": limit.errors["value"] + bifurcation.error,
             "error_of": BODY,
             "links": list(limit.links),
         }
@@ -192,7 +197,7 @@ def _with_force(bifurcation: dict[str, Any], units: Units) -> dict[str, Any]:
     return bifurcation | force_in(units, bifurcation.get(FORCE))
 
 
-def _told(answer: dict[str, Any], title: str, units: Units) -> Answer:
+def _with_text(answer: dict[str, Any], title: str, units: Units) -> Answer:
     name = answer["parameter"]
     first, last = answer["points"][0], answer["points"][-1]
     lines = [
@@ -205,22 +210,24 @@ def _told(answer: dict[str, Any], title: str, units: Units) -> Answer:
             f"  {'stable' if point['stable'] else 'unstable'}"
             for point in answer["points"]
         ),
-        *(_bifurcation_line(one, units) for one in answer["bifurcations"]),
+        *(_bifurcation_line(point, units) for point in answer["bifurcations"]),
         *([f"  born {answer['birth']}ly at the onset"] if "birth" in answer else []),
     ]
     return Answer(answer, "\n".join(lines))
 
 
-def _bifurcation_line(one: dict[str, Any], units: Units) -> str:
-    further = "force_in" in one
+def _bifurcation_line(point: dict[str, Any], units: Units) -> str:
+    further = "force_in" in point
     unit = units.force if further else ""
-    at = f"{one['value']:.10g} {unit}".rstrip()
-    if one["error"] is not None or one["error_of"] == LINKS:
-        cure = "" if "not_converged" in one else CURE
-        at = told_of(one["value"], one["error"], one, unit, cure).rstrip()
-    at += units.beside(one["value"]) if further else ""
-    second = one["second_frequency"]
-    beside = f", second frequency {second:.6g}" if second is not None else ""
-    stability = f", stability {one['stability']}" if "stability" in one else ""
-    left = f" (not converged: {one['not_converged']})" if "not_converged" in one else ""
-    return f"  {one['kind']} at {at}: {one['frequency']:.7g} cycles per T{beside}{stability}{left}"
+    place = f"{point['value']:.10g} {unit}".rstrip()
+    if point["error"] is not None or point["error_of"] == LINKS:
+        cure = "" if "not_converged" in point else CURE
+        place = told_of(point["value"], point["error"], point, unit, cure).rstrip()
+    place += units.beside(point["value"]) if further else ""
+    second = point["second_frequency"]
+    second_text = f", second frequency {second:.6g}" if second is not None else ""
+    stability = f", stability {point['stability']}" if "stability" in point else ""
+    unconverged = f" (not converged: {point['not_converged']})" if "not_converged" in point else ""
+    frequency = f"{point['frequency']:.7g} cycles per T"
+    further_text = f"{second_text}{stability}{unconverged}"
+    return f"  {point['kind']} at {place}: {frequency}{further_text}"

@@ -10,7 +10,7 @@ import xarray as xr
 
 from undula.analysis.maps.basins import basins
 from undula.analysis.maps.contradictions import Disagreement, contradictions
-from undula.analysis.maps.stability_boundaries import BORDERS, StabilityBoundaries
+from undula.analysis.maps.stability_boundaries import BOUNDARIES, StabilityBoundaries
 from undula.analysis.parameters import FORCE
 from undula.app.commands.boundaries import borders_of
 from undula.app.commands.drawing import FORMATS, beside, check_figure_name, save_figure
@@ -124,5 +124,5 @@ def _draw(
 def _lines(found: StabilityBoundaries) -> list[tuple[str, Any, Any]]:
     """Return the borders that have a force somewhere, as the views draw them."""
     values = np.array(found.values)
-    curves = [(name, values, found.curve(name)[0]) for name in BORDERS]
+    curves = [(name, values, found.curve(name)[0]) for name in BOUNDARIES]
     return [curve for curve in curves if np.isfinite(curve[2]).any()]

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from undula.analysis.maps.contradictions import Disagreement
-from undula.analysis.maps.stability_boundaries import BORDERS, StabilityBoundaries
+from undula.analysis.maps.stability_boundaries import BOUNDARIES, StabilityBoundaries
 from undula.analysis.states.extrapolation import links_are_body
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
@@ -42,7 +42,7 @@ def diagram_answer(
             "parameter": borders.parameter,
             "links": None if changing else model.links,
             "error_of": BODY if links_are_body(model) else LINKS,
-            "borders": {name: list(_border(borders, name)) for name in BORDERS},
+            "borders": {name: list(_border(borders, name)) for name in BOUNDARIES},
             "disagreements": [
                 {**one.at, "verdict": one.verdict, "near": one.near, "sentence": one.sentence}
                 for one in wrong
@@ -79,7 +79,7 @@ def _border(borders: StabilityBoundaries, name: str) -> Iterator[dict[str, Any]]
         yield place | {
             "force": float(forces[index]) if known else None,
             "error": float(errors[index]) if known else None,
-            "reason": borders.gap(name, index),
+            "reason": borders.why_no_boundary(name, index),
         }
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from undula.analysis.parameters import FORCE
 from undula.analysis.ramps.ramp import Ramp, Step, ramp
 from undula.analysis.run_settings import Ending
-from undula.analysis.solvers.thresholds import THRESHOLDS, Threshold, threshold
+from undula.analysis.solvers.threshold_record import Threshold
+from undula.analysis.solvers.thresholds import THRESHOLDS, threshold
 from undula.app.commands.drawing import beside, save_figure
 from undula.app.commands.step_text import step_answer, step_text
 from undula.errors import InputError

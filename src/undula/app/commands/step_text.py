@@ -14,8 +14,8 @@ from undula.analysis.ramps.regime_changes import (
     regime_changes,
     regimes,
 )
-from undula.analysis.solvers.thresholds import Threshold
-from undula.app.commands.threshold import force_told, links_told, threshold_answer
+from undula.analysis.solvers.threshold_record import Threshold
+from undula.app.commands.threshold import force_text, links_text, threshold_answer
 from undula.models.units import Units
 from undula.storage.ramp_file import Series
 from undula.terminal.units_text import units_lines
@@ -110,7 +110,7 @@ def _span(start: float, end: float) -> str:
 def _beside(found: Answer, units: Units) -> str:
     if found["value"] is None:
         return f"none: {found['reason']}"
-    said = f"{force_told(found, units)} ({found['bifurcation']}){links_told(found)}"
+    said = f"{force_text(found, units)} ({found['bifurcation']}){links_text(found)}"
     change = found["nearest_change"]
     if change is None:
         return f"{said}; no change of regime to compare with"

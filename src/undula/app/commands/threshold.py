@@ -1,10 +1,11 @@
-"""`undula threshold`: forces at which stability changes, in plain JSON types and for people."""
+"""`undula threshold`: forces at which stability changes, in plain JSON types and as text."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from undula.analysis.parameters import changed
-from undula.analysis.solvers.thresholds import Threshold, threshold, threshold_curve
+from undula.analysis.solvers.threshold_record import Threshold
+from undula.analysis.solvers.thresholds import threshold, threshold_curve
 from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.units import Units
@@ -13,19 +14,32 @@ from undula.terminal.output import Answer
 from undula.terminal.progress import counted, searching
 from undula.terminal.units_text import force_in, units_lines
 
-#: What helps where the search ended without a threshold.
+#: Advice where the search ended without a threshold.
 _FARTHER = "--up-to looks farther"
 
 
-def tell_threshold(
+def answer_threshold(
     model: Model, name: str, *, converge: bool, up_to: float | None, title: str
 ) -> Answer:
-    """Find one threshold."""
-    with searching(name) as tell:
-        found = threshold(model, name, converged=converge, up_to=up_to, progress=tell)
+    """Return the answer for one threshold.
+
+    Parameters
+    ----------
+    model : Model
+    name : str
+        Of the threshold.
+    converge : bool
+        Whether to take it to the limit of many links.
+    up_to : float or None
+        The force at which the search ends.
+    title : str
+        Beginning of the text.
+    """
+    with searching(name) as progress:
+        result = threshold(model, name, converged=converge, up_to=up_to, progress=progress)
     units = model.units
     answer = {"status": "done", "units": units.names(), "threshold": name}
-    answer |= threshold_answer(found, units)
+    answer |= threshold_answer(result, units)
     lines = [
         f"{title}: {name} {_line(answer, units)}",
         *_cure([answer]),
@@ -34,7 +48,7 @@ def tell_threshold(
     return Answer(answer, "\n".join(lines))
 
 
-def tell_thresholds(
+def answer_threshold_curve(
     model: Model,
     name: str,
     along: tuple[str, tuple[float, ...]],
@@ -43,85 +57,89 @@ def tell_thresholds(
     up_to: float | None,
     title: str,
 ) -> tuple[Answer, tuple[Threshold, ...]]:
-    """Find a threshold at each value of a second parameter."""
+    """Return the answer for a threshold along a second parameter, and the thresholds.
+
+    Parameters are those of `answer_threshold`; `along` is the second one's name and its values.
+    """
     parameter, values = along
-    with interruptible() as interrupted, counted(f"{name} along {parameter}") as tell:
-        found = threshold_curve(
+    with interruptible() as interrupted, counted(f"{name} along {parameter}") as progress:
+        curve = threshold_curve(
             model,
             name,
             parameter,
             values,
             converged=converge,
             up_to=up_to,
-            progress=tell,
+            progress=progress,
             stop=interrupted,
         )
-    done = len(found) == len(values)
+    done = len(curve) == len(values)
     # A chain of other links has other further units.
-    units = [changed(model, parameter, value).units for value in values[: len(found)]]
-    told = [threshold_answer(one, of) for one, of in zip(found, units, strict=True)]
-    each = list(zip(values, told, units, strict=False))
+    units = [changed(model, parameter, value).units for value in values[: len(curve)]]
+    answers = [threshold_answer(*pair) for pair in zip(curve, units, strict=True)]
+    rows = list(zip(values, answers, units, strict=False))
     names = model.units.names()
     answer = {
         "status": "done" if done else "interrupted",
         "units": names,
         "threshold": name,
         "parameter": parameter,
-        "thresholds": [{parameter: value} | one for value, one, _ in each],
+        "thresholds": [{parameter: value} | row for value, row, _ in rows],
     }
     lines = [
         f"{title}: {name} along {parameter}",
         *units_lines(names, model.units.forces),
-        *(f"  {value:>12.6g}  {_line(one, of)}" for value, one, of in each),
-        *_cure(told),
+        *(f"  {value:>12.6g}  {_line(row, own)}" for value, row, own in rows),
+        *_cure(answers),
     ]
-    return Answer(answer, "\n".join(lines)), found
+    return Answer(answer, "\n".join(lines)), curve
 
 
-def threshold_answer(found: Threshold, units: Units) -> dict[str, Any]:
+def threshold_answer(result: Threshold, units: Units) -> dict[str, Any]:
     """Return a threshold in plain JSON types."""
     return {
-        "value": found.value,
-        **force_in(units, found.value),
-        "error": found.error,
+        "value": result.value,
+        **force_in(units, result.value),
+        "error": result.error,
         "error_of": BODY,
-        "solver_error": found.solver_error,
-        "links": _links(found),
-        "frequency": found.frequency,
-        "second_frequency": found.second_frequency,
-        "bifurcation": found.bifurcation,
-        "reason": found.reason,
-        "searched_to": found.searched_to,
+        "solver_error": result.solver_error,
+        "links": _links(result),
+        "frequency": result.frequency,
+        "second_frequency": result.second_frequency,
+        "bifurcation": result.bifurcation,
+        "reason": result.reason,
+        "searched_to": result.searched_to,
     }
 
 
-def _links(found: Threshold) -> int | list[int] | None:
+def _links(result: Threshold) -> int | list[int] | None:
     """Return the number of links that a force is of, or those that it was extrapolated from."""
-    return found.links[0] if len(found.links) == 1 else list(found.links) or None
+    return result.links[0] if len(result.links) == 1 else list(result.links) or None
 
 
-def force_told(answer: Mapping[str, Any], units: Units) -> str:
+def force_text(answer: Mapping[str, Any], units: Units) -> str:
     """Return the force of a threshold's answer, with its error if that is known."""
     value, error = answer["value"], answer["error"]
     if error is None:
-        told = on_links(value, answer["solver_error"], answer["links"], units.force)
+        text = on_links(value, answer["solver_error"], answer["links"], units.force)
     else:
-        told = f"{with_error(value, error)} {units.force}"
-    return f"{told}{units.beside(value)}"
+        text = f"{with_error(value, error)} {units.force}"
+    return f"{text}{units.beside(value)}"
 
 
-def links_told(answer: Mapping[str, Any]) -> str:
-    """Return what the force is on these links, after a semicolon, if that is something else."""
+def links_text(answer: Mapping[str, Any]) -> str:
+    """Return the force on these links, after a semicolon, if it differs from the body's."""
     if not _is_of_few(answer) or answer["error"] is None:
         return ""
-    here, exactly = digits(answer["value"], answer["solver_error"]), answer["solver_error"]
-    return f"; on {answer['links']} links {here}, solved to {exactly:.1g}"
+    error = answer["solver_error"]
+    force = digits(answer["value"], error)
+    return f"; on {answer['links']} links {force}, solved to {error:.1g}"
 
 
 def _is_of_few(answer: Mapping[str, Any]) -> bool:
-    """Tell whether a force is that of links which have more of them for a body."""
-    apart = answer["value"] is not None and answer["error"] != answer["solver_error"]
-    return apart and isinstance(answer["links"], int)
+    """Return whether a force is that of a few links which stand for a body of more."""
+    differs = answer["value"] is not None and answer["error"] != answer["solver_error"]
+    return differs and isinstance(answer["links"], int)
 
 
 def _line(answer: Mapping[str, Any], units: Units) -> str:
@@ -129,11 +147,11 @@ def _line(answer: Mapping[str, Any], units: Units) -> str:
         farther = "" if answer["searched_to"] is None else f"; {_FARTHER}"
         return f"none: {answer['reason']}{farther}"
     return (
-        f"at force {force_told(answer, units)} ({answer['bifurcation']}),"
-        f" {answer['frequency']:.7g} cycles per T{links_told(answer)}"
+        f"at force {force_text(answer, units)} ({answer['bifurcation']}),"
+        f" {answer['frequency']:.7g} cycles per T{links_text(answer)}"
     )
 
 
 def _cure(answers: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Return a line on how to come from these links to the body, if there is more to come to."""
+    """Return a line with the option that gives the body's force, if links are few."""
     return [f"  {CURE}"] if any(map(_is_of_few, answers)) else []
