@@ -16,16 +16,19 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from refusal import complaint
+from undula.analysis.states.branch_json import read_branch
 from undula.models.loads.analytic import LinearLoad, PowerLoad
 from undula.models.units import FILAMENT_UNITS, chain_units
 from undula.reproduction.claims.catalogue import Figure as Shown
 from undula.reproduction.claims.catalogue import catalogue
 from undula.reproduction.claims.evaluate import Answer
-from undula.reproduction.figures.answered_branches import read_branch
-from undula.reproduction.figures.bistability import common_stretches
+from undula.reproduction.figures.bistability import common_intervals
+from undula.reproduction.figures.branch_panels import read_pair
 from undula.reproduction.figures.by_name import VIEWS
 from undula.reproduction.report import figures as report_figures
 from undula.storage.run_file import write_run
+from undula.views.branches.branch_lines import BranchLine
+from undula.views.branches.smooth_lines import smooth_line
 
 FILAMENT, CHAIN = FILAMENT_UNITS.names(), chain_units(2).names()
 LOST, GAINED = 180.0, 176.0
@@ -55,10 +58,21 @@ def followed(
             "frequency": float(frequency(force)),
             "bending_energy": energy(force),
             "stable": bool(stable(force)),
+            "leading_rate": -1.0 if stable(force) else 1.0,
         }
         for force in forces
     ]
-    found = [{"kind": "torus", "value": value, "stability": what} for value, what in turns]
+    found = [
+        {
+            "kind": "torus",
+            "value": value,
+            "error": 1e-7,
+            "frequency": float(frequency(value)),
+            "second_frequency": None,
+            "stability": what,
+        }
+        for value, what in turns
+    ]
     told = {"status": "done", "units": units, "parameter": "load.force", "points": points}
     return told | {"bifurcations": found} | more
 
@@ -237,21 +251,25 @@ def test_answers_of_two_kinds_of_models_are_refused(name: str) -> None:
     assert "in B/L^2 and in K/L" in complaint(lambda: draw(name, spinning(), of_chains(flapping)))
 
 
+def line_of(answer: dict[str, Any]) -> BranchLine:
+    return smooth_line(read_branch(answer, "load.force"))
+
+
 def test_an_answer_without_a_state_is_refused_with_its_reason() -> None:
     none = {"status": "not found", "units": FILAMENT, "reason": "spinning begins at 37.7"}
-    assert "spinning begins at 37.7" in complaint(lambda: read_branch(none))
+    assert "spinning begins at 37.7" in complaint(lambda: read_branch(none, "load.force"))
 
 
 def test_a_stable_part_ends_at_the_bifurcation_and_not_at_a_state() -> None:
     # The bifurcation is looked for by its force to better than a millionth of an interval.
-    assert read_branch(spinning()).stable_stretches == [(50.0, pytest.approx(LOST, abs=1e-5))]
-    assert read_branch(flapping()).stable_stretches == [(pytest.approx(GAINED, abs=1e-5), 300.0)]
+    assert line_of(spinning()).stable_intervals == [(50.0, pytest.approx(LOST, abs=1e-5))]
+    assert line_of(flapping()).stable_intervals == [(pytest.approx(GAINED, abs=1e-5), 300.0)]
 
 
 def test_a_stable_part_that_ends_at_no_known_place_ends_half_way() -> None:
-    (stretch,) = read_branch(spinning(turns=())).stable_stretches
+    (interval,) = line_of(spinning(turns=())).stable_intervals
     # States at 170 and 180; half of the way along the branch is nearly half of the force.
-    assert stretch == (50.0, pytest.approx(175.0, abs=0.1))
+    assert interval == (50.0, pytest.approx(175.0, abs=0.1))
 
 
 def test_a_branch_that_loses_and_gains_stability_has_two_stable_parts() -> None:
@@ -259,9 +277,10 @@ def test_a_branch_that_loses_and_gains_stability_has_two_stable_parts() -> None:
         stable=lambda force: not 101.0 < force < 199.0,
         turns=((101.0, "lost"), (150.0, "unchanged"), (199.0, "gained")),
     )
-    branch = read_branch(answer)
-    edges = [*branch.stable_stretches[0], *branch.stable_stretches[1]]
+    line = line_of(answer)
+    edges = [*line.stable_intervals[0], *line.stable_intervals[1]]
     assert edges == pytest.approx([50.0, 101.0, 199.0, 300.0], abs=1e-5)
+    assert line.values[line.marks] == pytest.approx([101.0, 199.0], abs=1e-5)
 
 
 def test_a_branch_that_folds_back_is_parted_at_its_fold() -> None:
@@ -270,31 +289,20 @@ def test_a_branch_that_folds_back_is_parted_at_its_fold() -> None:
     answer = spinning(forces=forces, stable=lambda _: False, turns=((150.0, "gained"),))
     for point, at in zip(answer["points"], way, strict=True):
         point |= {"stable": bool(at > 0.0), "frequency": 100.0 + 20.0 * at}
-    branch = read_branch(answer)
-    ((low, high),) = branch.stable_stretches
+    line = line_of(answer)
+    ((low, high),) = line.stable_intervals
     # The states next to the fold are 0.17 beyond it, their neighbours 1.5.
     assert (low, high) == (pytest.approx(150.0, abs=0.1), 210.0)
-    assert "folds back" in complaint(lambda: branch.at(np.array([160.0]), "frequencies"))
+    refused = complaint(lambda: line.interpolated(line.frequencies, np.array([160.0])))
+    assert "folds back" in refused
 
 
 def test_between_states_a_branch_follows_the_curve_that_they_lie_on() -> None:
-    branch = read_branch(spinning())
+    line = line_of(spinning())
     forces = np.linspace(50.0, 300.0, 77)
     # A cubic through states ten apart; the logarithm curves most at the first of them.
-    assert branch.at(forces, "mean") == pytest.approx(law(forces), abs=5e-3)
-    assert branch.at(forces, "frequencies") == pytest.approx(2.0 * forces, rel=1e-3)
-
-
-def test_the_onset_is_where_the_energy_of_the_newborn_state_would_vanish() -> None:
-    def energy(force: float) -> float:
-        return 0.1 * (force - 37.0) - 0.001 * (force - 37.0) ** 2
-
-    forces = np.array([37.5, 38.0, 39.0, 41.0, 45.0])
-    answer = spinning(forces=forces, energy=energy)
-    assert read_branch(answer).onset is None
-    # Of third order in the distance of the states, 2, with curvatures of a hundredth.
-    born = read_branch(answer | {"birth": "supercritical"})
-    assert born.onset == pytest.approx(37.0, abs=1e-3)
+    assert line.interpolated(line.mean, forces) == pytest.approx(law(forces), abs=5e-3)
+    assert line.interpolated(line.frequencies, forces) == pytest.approx(2.0 * forces, rel=1e-3)
 
 
 def test_frequencies_end_at_a_third_and_at_the_end_of_the_branches() -> None:
@@ -378,8 +386,7 @@ def test_the_logarithm_is_not_held_against_chains() -> None:
 
 
 def test_both_are_stable_between_the_gain_of_the_one_and_the_loss_of_the_other() -> None:
-    pair = read_branch(spinning()), read_branch(flapping())
-    ((low, high),) = common_stretches(*pair)
+    ((low, high),) = common_intervals(read_pair(spinning(), flapping()))
     assert (low, high) == pytest.approx((GAINED, LOST), abs=1e-5)
     figure = draw("bistability")
     assert letters(figure) == "(a)(b)"
@@ -390,10 +397,10 @@ def test_both_are_stable_between_the_gain_of_the_one_and_the_loss_of_the_other()
 
 def test_the_straight_state_is_shown_only_where_its_end_is_known() -> None:
     assert not lines(draw("bistability"), "straight, stable")
-    born = spinning(forces=np.linspace(40.0, 300.0, 27), energy=lambda force: force - 39.0)
-    figure = draw("bistability", born | {"birth": "supercritical"}, flapping())
+    from_onset = spinning(forces=np.linspace(40.0, 300.0, 27)) | {"onset": 39.0}
+    figure = draw("bistability", from_onset, flapping())
     ends = [line.get_xdata()[1] for line in lines(figure, "straight, stable")]
-    assert ends == pytest.approx([39.0] * len(ends), abs=1e-6)
+    assert ends == [39.0] * len(ends)
     assert ends
 
 

@@ -1,4 +1,4 @@
-"""Thresholds along a parameter as answers of `undula threshold` tell them."""
+"""Thresholds along a parameter, from answers of `undula threshold`."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from undula.arrays import Array
 from undula.errors import InputError
-from undula.reproduction.figures.answered_branches import same_units
+from undula.reproduction.figures.same_units import same_units
 from undula.views.linear.threshold_curves import threshold_curves
 
 _NAMES = {

@@ -22,7 +22,7 @@ def stepped(*series: xr.Dataset) -> Figure:
     return ramp_diagram(series)
 
 
-#: By the name that the catalogue uses; each takes what its tasks came to, one argument a task.
+#: Figures by their names in the catalogue; each takes the results of its tasks, in their order.
 VIEWS: Mapping[str, Callable[..., Figure]] = {
     "bending_energies": bending_energies,
     "bistability": bistability,

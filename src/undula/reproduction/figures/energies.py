@@ -1,4 +1,4 @@
-"""Bending energies of spinning and flapping against the force, beside the paper's logarithm.
+"""Bending energies of spinning and flapping against the force, with the paper's logarithm.
 
 After the figure "Bending energy versus axial force" of Ling, Guo & Kanso (2018).
 """
@@ -14,28 +14,25 @@ from matplotlib.patches import Patch
 
 from undula.arrays import Array
 from undula.errors import InputError
-from undula.reproduction.figures.answered_branches import (
-    AnsweredBranch,
-    parts,
-    read_branch,
-    same_units,
-)
 from undula.reproduction.figures.branch_panels import (
-    FLAPPING,
-    SPINNING,
+    Pair,
     branch_handles,
     draw_branch,
     draw_forces,
     force_labels,
+    last_force,
+    read_pair,
 )
+from undula.reproduction.figures.same_units import same_units
+from undula.views.branches.named_branches import NamedBranch
 from undula.views.common import style
 from undula.views.common.labels import label_above
 from undula.views.common.panels import legend_above, letter_axes, quiet_line
 
-#: The paper's curve is ln(F - 38.7).
+#: Force [B/L^2] in the paper's curve ln(F - 38.7).
 _FORCE_OF_THE_LAW = 38.7
 _EDGES = (0.085, 0.97)
-#: Per cent; where the logarithm is close to zero any difference from it is beyond all bounds.
+#: Range of the difference [%]: close to zero of the logarithm the difference has no bound.
 _SHOWN = 20.0
 
 
@@ -58,25 +55,25 @@ def bending_energies(spinning: Mapping[str, Any], flapping: Mapping[str, Any]) -
     InputError
         An answer is of another kind or another model.
     """
-    branches = read_branch(spinning), read_branch(flapping)
-    units = same_units(*(one.units for one in branches))
+    pair = read_pair(spinning, flapping)
+    units = same_units(spinning["units"], flapping["units"])
     if units["force"] != style.FILAMENT["force"]:
         raise InputError(
             f"the answers have forces in {units['force']}, but the paper's logarithm is a"
             " filament's; give answers about filaments"
         )
-    end = max(float(one.forces.max()) for one in branches)
+    end = last_force(pair)
     with style.figure_style():
         figure = Figure(figsize=(9.0, 6.2))
-        top = label_above(figure, force_labels(*branches, (0.0, end), _EDGES), *_EDGES)
+        top = label_above(figure, force_labels(pair, (0.0, end), _EDGES), *_EDGES)
         place: Any = {"left": _EDGES[0], "right": _EDGES[1], "bottom": 0.085, "top": top}
         grid = figure.add_gridspec(2, 1, hspace=0.16, height_ratios=(5, 3), **place)
         upper = figure.add_subplot(grid[0])
         lower = figure.add_subplot(grid[1], sharex=upper)
-        _draw_energies(upper, *branches, end)
-        _draw_difference(lower, branches[0])
+        _draw_energies(upper, pair, end)
+        _draw_difference(lower, pair[0])
         for axes, which in ((upper, "a"), (lower, "b")):
-            draw_forces(axes, *branches)
+            draw_forces(axes, pair)
             letter_axes(figure, axes, which, 0.65)
         upper.set_xlim(0.0, end)
         upper.tick_params(labelbottom=False)
@@ -86,7 +83,7 @@ def bending_energies(spinning: Mapping[str, Any], flapping: Mapping[str, Any]) -
         figure.align_ylabels([upper, lower])
         law = Line2D([], [], color=style.INK, lw=1.3, ls=":", label=r"$\ln(F - 38.7)$, paper")
         envelope = Patch(color=style.Y_COLOUR, alpha=0.2, label="envelope over a beat")
-        legend_above(figure, [*branch_handles(branches), envelope, law], _EDGES[0])
+        legend_above(figure, [*branch_handles(pair), envelope, law], _EDGES[0])
     return figure
 
 
@@ -94,29 +91,27 @@ def _law(forces: Array) -> Array:
     return np.log(forces - _FORCE_OF_THE_LAW)
 
 
-def _draw_energies(
-    axes: Axes, spinning: AnsweredBranch, flapping: AnsweredBranch, end: float
-) -> None:
-    colour, name = FLAPPING
-    for start, last, stable in parts(flapping.stable):
-        part = slice(start, last + 1)
-        bounds = flapping.forces[part], flapping.low[part], flapping.high[part]
-        look: Any = {"color": colour, "alpha": 0.26 if stable else 0.12, "lw": 0.0}
-        axes.fill_between(*bounds, gid=f"{name}, envelope", **look)
-    for bound in (flapping.low, flapping.high):
-        draw_branch(axes, flapping, bound, FLAPPING)
-    draw_branch(axes, spinning, spinning.mean, SPINNING)
+def _draw_energies(axes: Axes, pair: Pair, end: float) -> None:
+    spinning, flapping = pair
+    line = flapping.line
+    for part, stable in line.parts:
+        look: Any = {"color": flapping.colour, "alpha": 0.26 if stable else 0.12, "lw": 0.0}
+        look["gid"] = f"{flapping.name}, envelope"
+        axes.fill_between(line.values[part], line.low[part], line.high[part], **look)
+    for bound in (line.low, line.high):
+        draw_branch(axes, flapping, bound)
+    draw_branch(axes, spinning, spinning.line.mean)
     forces = np.linspace(_FORCE_OF_THE_LAW + 1.0, end, 400)
     axes.plot(forces, _law(forces), ":", color=style.INK, lw=1.5, zorder=5, gid="logarithm")
-    axes.set_ylim(0.0, 1.06 * float(flapping.high.max()))
+    axes.set_ylim(0.0, 1.06 * float(line.high.max()))
 
 
-def _draw_difference(axes: Axes, spinning: AnsweredBranch) -> None:
-    difference = np.full(spinning.forces.size, np.nan)
-    known = spinning.forces > _FORCE_OF_THE_LAW + 1.0
-    law = _law(spinning.forces[known])
-    difference[known] = 100.0 * (spinning.mean[known] / law - 1.0)
-    draw_branch(axes, spinning, difference, SPINNING)
+def _draw_difference(axes: Axes, spinning: NamedBranch) -> None:
+    line = spinning.line
+    difference = np.full(line.values.size, np.nan)
+    above = line.values > _FORCE_OF_THE_LAW + 1.0
+    difference[above] = 100.0 * (line.mean[above] / _law(line.values[above]) - 1.0)
+    draw_branch(axes, spinning, difference)
     quiet_line(axes)
     bound = 1.1 * max(_SHOWN, abs(float(difference[-1])))
     axes.set_ylim(-bound, bound)

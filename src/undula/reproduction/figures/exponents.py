@@ -14,7 +14,8 @@ from undula.errors import InputError
 from undula.views.common import style
 from undula.views.common.panels import legend_above, quiet_line
 
-_MOST = 8
+#: Number of exponents that are drawn of each run.
+_MOST_EXPONENTS = 8
 _COLOURS = (
     style.X_COLOUR,
     style.Y_COLOUR,
@@ -23,10 +24,10 @@ _COLOURS = (
     style.ACTIVE_COLOUR,
 )
 _MARKERS = ("o", "s", "^", "D", "v")
-#: What the exponents of all runs of one number take of the way to the next.
-_BESIDE = 0.6
-#: Above so many decades of exponents the axis is logarithmic away from zero.
-_WIDE = 30.0
+#: Width of a group, the exponents of all runs by one number, as a share of their distance.
+_GROUP_WIDTH = 0.6
+#: Ratio of the greatest exponent to the median above which the axis is logarithmic.
+_LOGARITHMIC_ABOVE = 30.0
 
 
 def lyapunov(*runs: xr.Dataset) -> Figure:
@@ -54,23 +55,23 @@ def lyapunov(*runs: xr.Dataset) -> Figure:
     with style.figure_style():
         figure = Figure(figsize=(9.0, 4.2))
         axes = figure.add_axes((0.095, 0.135, 0.88, 0.74))
-        places = _BESIDE * (np.arange(len(runs)) - 0.5 * (len(runs) - 1)) / max(len(runs), 3)
+        places = _GROUP_WIDTH * (np.arange(len(runs)) - 0.5 * (len(runs) - 1)) / max(len(runs), 3)
         handles, drawn, pairs = [], [], False
         looks = zip(cycle(_COLOURS), cycle(_MARKERS), summaries, places, strict=False)
-        for colour, marker, summary, aside in looks:
-            known = _known(summary)
+        for colour, marker, summary, shift in looks:
+            stored = _stored(summary)
             values, errors = (
-                np.array(known[key][:_MOST], float) for key in ("exponents", "errors")
+                np.array(stored[key][:_MOST_EXPONENTS], float) for key in ("exponents", "errors")
             )
             name = f"{summary['load']}: {summary['verdict']}"
             look: Any = {"fmt": marker, "color": colour, "ms": 5.5, "lw": 1.3, "capsize": 2.5}
-            numbers = np.arange(1, values.size + 1) + aside
+            numbers = np.arange(1, values.size + 1) + shift
             axes.errorbar(numbers, values, errors, gid=name, **look)
-            apart = known.get("finite_separation")
-            if apart and apart.get("rate") is not None:
+            pair = stored.get("finite_separation")
+            if pair and pair.get("rate") is not None:
                 pairs = True
-                error = apart.get("error") or 0.0
-                axes.errorbar([aside], [apart["rate"]], [error], mfc="white", gid="pairs", **look)
+                error = pair.get("error") or 0.0
+                axes.errorbar([shift], [pair["rate"]], [error], mfc="white", gid="pairs", **look)
             handles.append(Line2D([], [], ls="", marker=marker, color=colour, ms=5.5, label=name))
             drawn.append(values)
         quiet_line(axes)
@@ -89,18 +90,19 @@ def lyapunov(*runs: xr.Dataset) -> Figure:
     return figure
 
 
-def _known(summary: Mapping[str, Any]) -> Mapping[str, Any]:
-    known = summary.get("lyapunov")
-    if not known:
+def _stored(summary: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the exponents of a run."""
+    stored = summary.get("lyapunov")
+    if not stored:
         why = summary.get("without_lyapunov") or "they were not asked for"
         raise InputError(
             f"the run at F = {summary.get('force')} has no Lyapunov exponents ({why}); run it with"
             " --lyapunov"
         )
-    return dict(known)
+    return dict(stored)
 
 
 def _scale(axes: Any, values: Any) -> None:
     sizes = np.abs(values[values != 0.0])
-    if sizes.size and sizes.max() > _WIDE * np.median(sizes):
+    if sizes.size and sizes.max() > _LOGARITHMIC_ABOVE * np.median(sizes):
         axes.set_yscale("symlog", linthresh=float(np.median(sizes)))

@@ -1,4 +1,4 @@
-"""How the loads of the paper spread a force of 1 along the filament.
+"""Densities of the paper's loads, of a total force of 1, along the filament.
 
 After the figure "Axial forces" of Ling, Guo & Kanso (2018), with the power loads of the following
 one added.
@@ -19,7 +19,7 @@ from undula.views.common.panels import letter_axes
 _SLOPES = (-1.0, -0.5, 0.0, 0.5, 1.0)
 _POSITIONS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 _EXPONENTS = (1.0, 2.0, 5.0, 10.0)
-#: Length of the arrow that stands for a force of 1 [L].
+#: Length of the arrow of a force of 1 [L].
 _ARROW = 0.22
 
 

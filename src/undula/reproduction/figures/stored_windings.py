@@ -1,4 +1,4 @@
-"""How stored runs wind about the axis."""
+"""Rotation of stored runs about the axis."""
 
 import json
 from collections.abc import Mapping
@@ -16,9 +16,9 @@ from undula.views.run.reading import read_scene
 from undula.views.run.scene import Scene
 from undula.views.run.winding import TipAngleSeries, winding_figure
 
-#: Beats of the tip's height: of which curves are drawn, and of which shapes.
+#: Number of beats of the tip's height over which curves are drawn, and shapes.
 _CURVES, _SHAPES = 24.0, 5.3
-#: Below this [L] the tip keeps its height, and its rises are not the beat.
+#: Range of the tip's height below which its rises are not taken as the beat [L].
 _LEVEL = 1e-3
 
 
@@ -50,30 +50,30 @@ def _winding(run: xr.Dataset, which: str) -> TipAngleSeries:
     shown = _finest(scene)
     rate = _rate(shown, summary)
     beat = shown.duration if rate is None else 1.0 / rate
-    late = shown.times >= shown.end - _CURVES * beat
+    last = shown.times >= shown.end - _CURVES * beat
     title = f"({which})  $F$ = {float(summary['force']):g}: {scene.verdict}"
     length = min(_SHAPES * beat, shown.duration)
-    return TipAngleSeries(title, shown.times[late], shown.nodes[late], length)
+    return TipAngleSeries(title, shown.times[last], shown.nodes[last], length)
 
 
 def _finest(scene: Scene) -> Scene:
-    """Return the run itself where that shows its single cycles, otherwise its close-up."""
+    """Return the run itself if it resolves single cycles, otherwise its finely sampled end."""
     return scene if scene.interpolable else scene.detail
 
 
 def _rate(scene: Scene, summary: Mapping[str, Any]) -> float | None:
-    """Return the rises of the tip per T, or the frequency of a motion that keeps its height."""
-    late = scene.times >= 0.5 * (scene.start + scene.end)
-    times, heights = scene.times[late], tip_height(scene.nodes[late])
+    """Return the rises of the tip per T, or the frequency if the tip keeps its height."""
+    second_half = scene.times >= 0.5 * (scene.start + scene.end)
+    times, heights = scene.times[second_half], tip_height(scene.nodes[second_half])
     if float(np.ptp(heights)) >= _LEVEL:
         return _strongest(times, heights)
-    known = summary.get("frequency")
-    return abs(float(known)) if is_number(known) and known else None
+    frequency = summary.get("frequency")
+    return abs(float(frequency)) if is_number(frequency) and frequency else None
 
 
 def _strongest(times: Array, values: Array) -> float:
     """Return the frequency of the strongest line of evenly sampled values [cycles per T]."""
     strength = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size)))
     rates = np.fft.rfftfreq(values.size, float(times[1] - times[0]))
-    # A line of no cycle in the whole time is no beat.
+    # The first line, of zero frequency, is not a beat.
     return float(rates[1 + np.argmax(strength[1:])])

@@ -1,4 +1,4 @@
-"""A spinning and a flapping motion beside one another: shapes, paths of the tip, and energies.
+"""A spinning and a flapping motion side by side: shapes, paths of the tip, and energies.
 
 After the figures "Transition from 3D spinning to 2D flapping" and "Two-link chain" of Ling, Guo &
 Kanso (2018).
@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from undula.arrays import Array
-from undula.reproduction.figures.answered_branches import same_units
 from undula.reproduction.figures.branch_panels import FLAPPING, SPINNING
+from undula.reproduction.figures.same_units import same_units
 from undula.views.common import style
 from undula.views.common.panels import legend_above, letter, letter_axes
 from undula.views.run.portrait import shape_times
@@ -28,10 +28,9 @@ from undula.views.run.resample import curve_times, nodes_at, tip_at, values_at
 from undula.views.run.scene import Scene
 from undula.views.run.space import draw_shapes, draw_tip_path, space_axes
 
-_SHAPES = 24
-_POINTS = 700
-_PERIODS = 2.0
-#: Nodes of so few are the beads of a chain, and drawn as such.
+#: Numbers of shapes, of points of a curve, and of periods over which curves are drawn.
+_SHAPES, _POINTS, _PERIODS = 24, 700, 2.0
+#: Largest number of nodes that are drawn as the beads of a chain.
 _MOST_BEADS = 12
 
 
@@ -124,7 +123,7 @@ def two_links(spinning_run: xr.Dataset, flapping_run: xr.Dataset) -> Figure:
 
 
 def _motions(spinning: xr.Dataset, flapping: xr.Dataset) -> tuple[_Motion, _Motion]:
-    one, other = (
+    first, second = (
         _Motion(
             read_scene(run).detail, float(json.loads(run.attrs["summary"])["force"]), colour, dashes
         )
@@ -133,8 +132,8 @@ def _motions(spinning: xr.Dataset, flapping: xr.Dataset) -> tuple[_Motion, _Moti
             (flapping, FLAPPING, "--"),
         )
     )
-    same_units(one.scene.units, other.scene.units)
-    return one, other
+    same_units(first.scene.units, second.scene.units)
+    return first, second
 
 
 def _draw_shapes(figure: Figure, motion: _Motion, place: tuple[float, float, float, float]) -> None:
@@ -152,7 +151,7 @@ def _draw_shapes(figure: Figure, motion: _Motion, place: tuple[float, float, flo
 
 
 def _draw_key(figure: Figure, place: tuple[float, float, float, float]) -> None:
-    """Say what the colours of the shapes mean."""
+    """Draw the colour bar of the shapes' phases."""
     colours: Any = ScalarMappable(Normalize(0, 1), ListedColormap(style.shape_colours(_SHAPES)))
     bar = figure.colorbar(colours, cax=figure.add_axes(place), location="bottom")
     bar.outline.set_visible(False)
@@ -180,7 +179,7 @@ def _energy_at(scene: Scene, times: Array) -> Array:
 
 
 def _draw_curves(
-    axes: Axes, motions: Sequence[_Motion], at: Callable[[Scene, Array], Array]
+    axes: Axes, motions: Sequence[_Motion], quantity: Callable[[Scene, Array], Array]
 ) -> None:
     """Draw a quantity over the last two periods of the slower motion, from their beginning on."""
     lengths = [
@@ -194,7 +193,7 @@ def _draw_curves(
         scene = motion.scene
         times = curve_times(scene, scene.end - length, scene.end, _POINTS)
         look: Any = {"color": motion.colour, "lw": 1.8, "ls": motion.dashes}
-        axes.plot(times - (scene.end - length), at(scene, times), gid=scene.verdict, **look)
+        axes.plot(times - (scene.end - length), quantity(scene, times), gid=scene.verdict, **look)
     axes.set_xlim(0.0, length)
     axes.set_ylim(min(0.0, axes.dataLim.y0), 1.08 * axes.dataLim.y1)
     axes.set_xlabel(style.time_label(motions[0].scene.units))
@@ -202,5 +201,6 @@ def _draw_curves(
 
 def _handles(motions: Sequence[_Motion]) -> list[Line2D]:
     return [
-        Line2D([], [], color=one.colour, lw=1.8, ls=one.dashes, label=one.title) for one in motions
+        Line2D([], [], color=motion.colour, lw=1.8, ls=motion.dashes, label=motion.title)
+        for motion in motions
     ]

@@ -28,15 +28,16 @@ from undula.views.common import style
 from undula.views.common.labels import Label, label_above
 from undula.views.common.legends import fitting_legend
 
+# Edges of the panels, in shares of the figure.
 _LEFT, _RIGHT, _BOTTOM = 0.09, 0.975, 0.105
-# Room at both ends of the parameter axis, as a share of it, for marks that lie there.
-_ENDS = 0.02
+# Margin at both ends of the parameter axis, as a share of it, for marks that lie there.
+_MARGIN = 0.02
 
 
 def bifurcation_diagram(
     branches: Sequence[Branch[Any]], *, title: str, runs: Sequence[xr.Dataset] = ()
 ) -> Figure:
-    """Draw states along a parameter: where they are stable, and where they bifurcate.
+    """Draw states along a parameter, with their stability and their bifurcations.
 
     Parameters
     ----------
@@ -57,11 +58,19 @@ def bifurcation_diagram(
     ------
     InputError
         There is no branch, or they are along different parameters or in different units.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(60.0)))
+    >>> branch = un.follow(state, "load.force", 80.0)
+    >>> figure = un.views.bifurcation_diagram([branch], title="spinning")
+    >>> figure.savefig("branch.pdf")  # doctest: +SKIP
     """
     parameter, units = _common_parameter(branches), _common_units(branches)
     drawn = named_branches(branches)
     points = stored_points(runs, parameter, units)
-    span = _span([*(one.line.values for one in drawn), [point.value for point in points]])
+    span = _span([*(branch.line.values for branch in drawn), [point.value for point in points]])
     with style.figure_style():
         figure = style.headed_figure(title, paper_time=False)
         top = label_above(figure, _labels(drawn, span), _LEFT, _RIGHT)
@@ -70,9 +79,9 @@ def bifurcation_diagram(
         )
         upper = figure.add_subplot(grid[0], xlim=span)
         lower = figure.add_subplot(grid[1], sharex=upper)
-        for one in drawn:
-            draw_line(upper, one, one.line.frequencies)
-            draw_energy(lower, one)
+        for branch in drawn:
+            draw_line(upper, branch, branch.line.frequencies)
+            draw_energy(lower, branch)
         _draw_runs(upper, lower, points)
         _name_axes(figure, upper, lower, parameter, units)
         _name_all(figure, drawn, points, len(runs) - len(points))
@@ -91,10 +100,10 @@ def _common_parameter(branches: Sequence[Branch[Any]]) -> str:
 
 
 def _common_units(branches: Sequence[Branch[Any]]) -> style.UnitNames:
-    # States that are no more than their figures have no model, and pass for a filament's.
+    # States without a model, of which only numbers are known, are taken as a filament's.
     models = [getattr(branch.states[0], "model", None) for branch in branches]
     units = [style.FILAMENT if model is None else model.units.names() for model in models]
-    others = [each["force"] for each in units if each != units[0]]
+    others = [names["force"] for names in units if names != units[0]]
     if others:
         raise InputError(
             f"branches have forces in {units[0]['force']} and in {others[0]}: give branches in the"
@@ -105,18 +114,22 @@ def _common_units(branches: Sequence[Branch[Any]]) -> style.UnitNames:
 
 def _span(places: Sequence[ArrayLike]) -> tuple[float, float]:
     """Return the ends of the parameter axis; a single value lies in its middle."""
-    known = np.concatenate([np.asarray(some, dtype=np.float64) for some in places])
-    low, high = float(known.min()), float(known.max())
-    margin = _ENDS * (high - low) or max(0.1 * abs(low), 0.1)
+    values = np.concatenate([np.asarray(part, dtype=np.float64) for part in places])
+    low, high = float(values.min()), float(values.max())
+    margin = _MARGIN * (high - low) or max(0.1 * abs(low), 0.1)
     return low - margin, high + margin
 
 
 def _labels(drawn: Sequence[NamedBranch], span: tuple[float, float]) -> list[Label]:
     scale = (_RIGHT - _LEFT) / (span[1] - span[0])
     return [
-        Label(_LEFT + scale * (one.value - span[0]), f"{one.kind}\nat {one.value:.4g}", each.colour)
-        for each in drawn
-        for one in each.branch.bifurcations
+        Label(
+            _LEFT + scale * (point.value - span[0]),
+            f"{point.kind}\nat {point.value:.4g}",
+            branch.colour,
+        )
+        for branch in drawn
+        for point in branch.branch.bifurcations
     ]
 
 
@@ -148,12 +161,12 @@ def _name_all(
     figure: Figure, drawn: Sequence[NamedBranch], points: Sequence[StoredPoint], left_out: int
 ) -> None:
     handles: list[Artist] = [
-        Line2D([], [], color=one.colour, lw=WIDTH, label=one.name) for one in drawn
+        Line2D([], [], color=branch.colour, lw=WIDTH, label=branch.name) for branch in drawn
     ]
-    if not all(one.stable_throughout for one in drawn):
+    if not all(branch.stable_throughout for branch in drawn):
         dashes = DASHES[False]
         handles.append(Line2D([], [], color=style.QUIET, lw=WIDTH, ls=dashes, label="unstable"))
-    if any(np.any(one.line.low < one.line.high) for one in drawn):
+    if any(np.any(branch.line.low < branch.line.high) for branch in drawn):
         handles.append(Patch(color=style.SHADOW, label="range over a cycle"))
     if points:
         handles.append(Line2D([], [], color=style.INK, ls="", marker="o", ms=4.5, label="runs"))

@@ -30,13 +30,22 @@ _NAMES: Mapping[type[Any], str] = {
 }
 #: Line styles of stable and unstable parts.
 DASHES: Any = {True: "-", False: (0, (2.6, 1.6))}
-#: Width of both.
+#: Width of both [points].
 WIDTH = 1.8
 
 
 @dataclass(frozen=True)
 class NamedBranch:
-    """A branch as it is drawn: its name, its colour, and its points."""
+    """A branch as it is drawn.
+
+    Attributes
+    ----------
+    name, colour : str
+        In the legend.
+    branch : Branch
+    line : BranchLine
+        Its points.
+    """
 
     name: str
     colour: str
@@ -45,12 +54,12 @@ class NamedBranch:
 
     @property
     def stable_throughout(self) -> bool:
-        """Whether no part of it is unstable."""
+        """True if no part of it is unstable."""
         return bool(np.all(self.line.stable)) and all(state.stable for state in self.branch.states)
 
 
 def named_branches(branches: Sequence[Branch[Any]]) -> list[NamedBranch]:
-    """Name branches by the kind of their states, with numbers where that is not enough."""
+    """Return branches with names, by the kind of their states and, of several, their number."""
     kinds = [type(branch.states[0]) for branch in branches]
     names = [_NAMES.get(kind, kind.__name__) for kind in kinds]
     numbers = [names[: place + 1].count(name) for place, name in enumerate(names)]
@@ -64,7 +73,7 @@ def named_branches(branches: Sequence[Branch[Any]]) -> list[NamedBranch]:
 
 
 def draw_energy(axes: Axes, drawn: NamedBranch) -> None:
-    """Draw the mean over a cycle, and around it what lies between the least and the greatest."""
+    """Draw the mean energy over a cycle and a band from its least to its greatest value."""
     line = drawn.line
     # Where the branch folds back a single area would cancel itself.
     turns = np.flatnonzero(np.diff(np.sign(np.diff(line.values)))) + 1
@@ -79,22 +88,36 @@ def draw_energy(axes: Axes, drawn: NamedBranch) -> None:
 
 
 def draw_line(axes: Axes, drawn: NamedBranch, heights: Array) -> None:
-    """Draw the stable and unstable parts, and the bifurcations between them."""
+    """Draw the stable and unstable parts of a quantity, and the bifurcations between them."""
     line = drawn.line
-    changes = np.flatnonzero(line.stable[1:] != line.stable[:-1]) + 1
-    for first, last in pairwise([0, *changes, line.stable.size]):
-        if first == last:
-            continue
-        part, stable = slice(first, last + 1), bool(line.stable[first])
-        look: Any = {"color": drawn.colour, "lw": WIDTH, "dash_capstyle": "butt"}
-        look["gid"] = f"{drawn.name}, {'stable' if stable else 'unstable'}"
-        axes.plot(line.values[part], heights[part], ls=DASHES[stable], **look)
+    draw_parts(axes, drawn, heights, {stable: (WIDTH, DASHES[stable]) for stable in DASHES})
     if line.values.size == 1:
         face = drawn.colour if drawn.branch.states[0].stable else "white"
-        look = {"mec": drawn.colour, "mfc": face, "ms": 6.0, "gid": f"{drawn.name}, point"}
+        look: Any = {"mec": drawn.colour, "mfc": face, "ms": 6.0, "gid": f"{drawn.name}, point"}
         axes.plot(line.values, heights, "o", **look)
     look = {"mec": drawn.colour, "mfc": "white", "ms": 6.5, "mew": 1.6, "zorder": 4}
     look["gid"] = f"{drawn.name}, bifurcations"
     axes.plot(line.values[line.marks], heights[line.marks], "D", **look)
     for value in line.values[line.marks]:
         axes.axvline(value, color=drawn.colour, lw=0.7, alpha=0.5, zorder=1)
+
+
+def draw_parts(
+    axes: Axes, drawn: NamedBranch, heights: Array, styles: Mapping[bool, tuple[float, Any]]
+) -> None:
+    """Draw the stable and unstable parts of a quantity.
+
+    Parameters
+    ----------
+    axes : Axes
+    drawn : NamedBranch
+    heights : ndarray of shape (k,)
+        The quantity at the points of the line.
+    styles : mapping of bool to (float, dashes)
+        Width [points] and dashes of stable parts (True) and of unstable ones.
+    """
+    for part, stable in drawn.line.parts:
+        width, dashes = styles[stable]
+        look: Any = {"color": drawn.colour, "lw": width, "ls": dashes, "dash_capstyle": "butt"}
+        look["gid"] = f"{drawn.name}, {'stable' if stable else 'unstable'}"
+        axes.plot(drawn.line.values[part], heights[part], **look)

@@ -1,4 +1,4 @@
-"""From stored runs to points of a diagram: a parameter, a frequency and an energy each."""
+"""Stored runs as points of a diagram: a parameter, a frequency and an energy each."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from undula.views.run.reading import units_of
 
 @dataclass(frozen=True)
 class StoredPoint:
-    """The motion that a run ends in, with its parameter.
+    """The final motion of a run, with its parameter.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class StoredPoint:
 def stored_points(
     runs: Sequence[xr.Dataset], parameter: str, units: UnitNames
 ) -> list[StoredPoint]:
-    """Take the points from the runs that have one.
+    """Return the points of the runs that have one.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def stored_points(
         Without the runs whose parameter cannot be read, without those that end straight or in a
         motion without a frequency, and without those in other units.
     """
-    found = [_point(run, parameter, units) for run in runs]
-    return [point for point in found if point is not None]
+    points = [_point(run, parameter, units) for run in runs]
+    return [point for point in points if point is not None]
 
 
 def _point(run: xr.Dataset, parameter: str, units: UnitNames) -> StoredPoint | None:
@@ -63,15 +63,15 @@ def _point(run: xr.Dataset, parameter: str, units: UnitNames) -> StoredPoint | N
     value = _parameter(_mapping(json.loads(run.attrs.get("input", "{}"))), parameter)
     energy = _mapping(summary.get("bending_energy"))
     numbers = (value, summary.get("frequency"), *(energy.get(k) for k in ("min", "max", "mean")))
-    # While it dies away a motion has a frequency, but it is no state.
+    # While it decays a motion has a frequency, but it is not a state.
     if not all(is_number(number) for number in numbers) or summary.get("verdict") == "straight":
         return None
-    at, frequency, *bounds = (float(number) for number in numbers if number is not None)
-    return StoredPoint(at, frequency, Range(*bounds))
+    value, frequency, *bounds = (float(number) for number in numbers if number is not None)
+    return StoredPoint(value, frequency, Range(*bounds))
 
 
 def _parameter(given: Mapping[str, Any], parameter: str) -> Any:
-    """Find a parameter in an input file's tables, or in a model's fields, which hold its load."""
+    """Return a parameter from an input file's tables, or from a model's fields and its load's."""
     table, _, key = parameter.partition(".")
     inner = _mapping(_mapping(given.get("model")).get(table))
     return _mapping(given.get(table)).get(key, inner.get(key))
