@@ -1,9 +1,9 @@
-"""Settle and step: a motion taken along a parameter as an experiment would take it.
+"""A quasi-static ramp: a parameter changed step by step, as in an experiment.
 
 The model settles at a value of the parameter; the value is changed, and the model settles again
-from where it was. What it ends in may thus depend on the way that it came. Before each run all
-links are turned a little at random, in a smooth manner: a state that has lost its stability would
-otherwise be kept until round-off has grown.
+from its last shape. Its final motion may thus depend on the direction of the ramp. Before each run
+all links are turned a little at random, smoothly along the filament: a state that has lost its
+stability would otherwise be kept until round-off has grown.
 
 Source: the continuation of Ling, Guo & Kanso (2018) for their bead-spring chains.
 """
@@ -27,22 +27,22 @@ from undula.errors import InputError, is_number
 from undula.models.initial_states import turned
 from undula.models.model import Model
 
-#: Each step is a run of its own.
+#: Largest number of steps of a ramp; each step is a run of its own.
 MOST_STEPS = 10_000
 
 
 @dataclass(frozen=True)
 class Ramp:
-    """The values that a parameter takes, one after the other, and the kick before each run.
+    """The values that a parameter takes in turn, and the kick before each run.
 
     Attributes
     ----------
     parameter : str
-        Such as "load.force"; no whole number, see `parameters.value_of`.
+        Such as "load.force"; not a whole number, see `parameters.value_of`.
     values : tuple of float
-        On the way there, from one to 10,000, in their order.
+        Of the forward ramp, from 1 to 10,000, in their order.
     back : bool
-        Whether to go back through the same values.
+        Whether the ramp returns through the same values.
     kick : float
         Largest angle by which a link is turned before a run [rad], from 0 to pi/2.
     seed : int
@@ -56,7 +56,7 @@ class Ramp:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        """Refuse values that make no course."""
+        """Refuse values that do not make a ramp."""
         if len(self.values) > MOST_STEPS:
             raise InputError(
                 f"values are {len(self.values)} steps, each a run of its own, and {MOST_STEPS} are"
@@ -74,12 +74,21 @@ class Ramp:
     @property
     def targets(self) -> tuple[tuple[float, str], ...]:
         """The values in the order in which they are taken, each with its direction."""
-        there, back = ("up", "down") if self.values[-1] >= self.values[0] else ("down", "up")
+        forward, back = ("up", "down") if self.values[-1] >= self.values[0] else ("down", "up")
         returning = self.values[-2::-1] if self.back else ()
-        return (*((v, there) for v in self.values), *((v, back) for v in returning))
+        return (*((v, forward) for v in self.values), *((v, back) for v in returning))
 
     def models(self, model: Model) -> list[Model]:
         """Return the model at each of the values.
+
+        Parameters
+        ----------
+        model : Model
+            Its own value of the parameter does not matter.
+
+        Returns
+        -------
+        list of Model
 
         Raises
         ------
@@ -94,28 +103,28 @@ class Ramp:
             )
         value_of(model, self.parameter)
         models = [changed(model, self.parameter, value) for value, _ in self.targets]
-        for here in models:
-            here.straight()  # of which extensible links may be incapable
+        for model in models:
+            model.straight()  # of which extensible links may be incapable
         return models
 
 
 @dataclass(frozen=True)
 class Step:
-    """What the model has come to at one value of the parameter.
+    """The settled motion at one value of the parameter.
 
-    Numbers are in the model's units; what a motion does not have is NaN. The figures of the motion
-    are those of the late window of the run, see `undula.analysis.runs.run.Run`.
+    Numbers are in the model's units, NaN if the motion does not have them. They are measured in the
+    late window of the run, see `undula.analysis.runs.run.Run`.
 
     Attributes
     ----------
     value : float
         The parameter.
     direction : {"up", "down"}
-        How the parameter changes on this way.
+        Direction in which the parameter changes.
     status, cause : str
-        How the run has ended, and why it failed if it did.
+        Ending of the run, and why it failed if it did.
     verdict, reason : str
-        What it ends in, and the sentence for that.
+        Name of its final motion, and the reason in a sentence.
     frequency, rotation_frequency, shape_frequency : float
         As of a run, each with its error [cycles per T]; the frequency without its sign.
     bending_energy, tip_radius, tip_height : Range
@@ -125,16 +134,16 @@ class Step:
     steps : int
         Steps of the integrator.
     time : float
-        Time that the run took to settle and to be seen, or that it was given [T].
+        Time that the run took to settle and to be observed, or that it was given [T].
     seconds : float
-        Wall time of it.
+        Wall time of the run.
     nodes : ndarray, shape (N + 1, 3)
-        Where it ended [L].
+        Its last shape [L].
     shape_times : ndarray, shape (m,)
         Times of the shapes [T].
     shapes : ndarray, shape (m, N + 1, 3)
-        Samples about evenly over the last period [L]; of a motion without one over the period of
-        the strongest line of its spectrum, and of a straight one over the whole window.
+        Samples about evenly over the last period [L]; of a motion that is not periodic over the
+        period of the strongest line of its spectrum, of a straight one over the whole window.
     """
 
     value: float
@@ -173,28 +182,32 @@ def ramp(
     budget: float = math.inf,
     progress: Callable[[Progress], None] | None = None,
 ) -> Iterator[Step]:
-    """Yield each step of a course as soon as it has been run.
+    """Yield each step of a ramp as soon as it has been run.
 
     Parameters
     ----------
     model : Model
         Its own value of the parameter does not matter.
-    course : Course
+    course : Ramp
     start : ndarray, shape (model.size,)
         The state that the first run begins with, once it has been kicked.
     schedule : Schedule
         Of each run.
     before : sequence of Step
-        Steps that have been made already. Those that follow are the same as without interruption.
+        Steps that have been run already. Those that follow are the same as without interruption.
     budget : float
-        Seconds after which no further step is yielded; one under way is dropped.
+        Time [s] after which no further step is yielded; a run under way is dropped.
     progress : callable, optional
         Called with a `Progress` of the run under way every few milliseconds.
+
+    Yields
+    ------
+    Step
 
     Raises
     ------
     InputError
-        As of `Course.models`.
+        As in `Ramp.models`.
     KeyboardInterrupt
         Ctrl-C came during a run, which is dropped.
     """
@@ -202,9 +215,9 @@ def ramp(
     nodes = before[-1].nodes if before else model.nodes(start)
     end = time.monotonic() + budget
     for number in range(len(before), len(models)):
-        here, began = models[number], time.monotonic()
-        x = _turned(here, nodes, course, number)
-        run = integrate(here, x, **asdict(schedule), budget=end - began, progress=progress)
+        model, began = models[number], time.monotonic()
+        x = _turned(model, nodes, course, number)
+        run = integrate(model, x, **asdict(schedule), budget=end - began, progress=progress)
         if run.ending is Ending.INTERRUPTED:
             raise KeyboardInterrupt
         if run.ending is Ending.OUT_OF_TIME:
@@ -219,17 +232,18 @@ def _turned(model: Model, nodes: Nodes, course: Ramp, number: int) -> State:
     """Return the state with these nodes and links turned by the kick of a step."""
     if course.kick == 0.0:
         return model.from_nodes(nodes)
-    # A seed of its own for each step, so that a series can be taken up at any of them.
+    # A seed of its own for each step, so that a ramp can be continued at any of them.
     own = np.random.SeedSequence((course.seed, number)).generate_state(1, np.uint64)[0]
     return turned(model, nodes, course.kick, seed=int(own))
 
 
 def _step(run: Run, value: float, direction: str, began: float) -> Step:
-    told, (times, shapes) = run.summary(), last_period(run)
-    # A step has the figures of a run's summary under the same names.
-    same = {field.name: told[field.name] for field in fields(Step) if field.name in told}
-    absent = {name: math.nan for name, figure in same.items() if figure is None}
-    ranges = {name: Range(**told[name]) for name in ("bending_energy", "tip_radius", "tip_height")}
+    summary, (times, shapes) = run.summary(), last_period(run)
+    # A step has the numbers of a run's summary under the same names.
+    same = {field.name: summary[field.name] for field in fields(Step) if field.name in summary}
+    absent = {name: math.nan for name, number in same.items() if number is None}
+    names = ("bending_energy", "tip_radius", "tip_height")
+    ranges = {name: Range(**summary[name]) for name in names}
     own: dict[str, Any] = {
         "value": value,
         "direction": direction,

@@ -1,6 +1,6 @@
-"""Where the verdict changes along a series of steps, and where it depends on the way.
+"""Changes of the verdict along a ramp, and hysteresis between its two directions.
 
-A verdict is a word here, whatever it means: "undecided" is one like the others.
+A verdict is only a word here: "undecided" is treated like the others.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,14 +12,15 @@ from undula.analysis.ramps.ramp import Step
 
 @dataclass(frozen=True)
 class Regime:
-    """Neighbouring steps of one way that have one verdict, and the values they reach from and to.
+    """Neighbouring steps in one direction that have one verdict.
 
     Attributes
     ----------
     direction, verdict : str
     start, end : float
-        Values of the first and of the last of them, in the order of the steps.
+        Values of the first and of the last step, in the order of the steps.
     steps : int
+        Number of steps.
     """
 
     direction: str
@@ -31,7 +32,7 @@ class Regime:
 
 @dataclass(frozen=True)
 class RegimeChange:
-    """Two neighbouring steps of one way whose verdicts differ: the change lies between them.
+    """Two neighbouring steps in one direction whose verdicts differ: the change lies between them.
 
     Attributes
     ----------
@@ -39,7 +40,8 @@ class RegimeChange:
     before, after : str
         The verdicts.
     start, end : float
-        The last value with the one verdict and the first with the other, in the order of the steps.
+        The last value with the first verdict and the first with the second, in the order of the
+        steps.
     """
 
     direction: str
@@ -49,21 +51,21 @@ class RegimeChange:
     end: float
 
     def distance(self, value: float) -> float:
-        """Return how far a value of the parameter is from where the change lies."""
+        """Return the distance of a value of the parameter from the interval of the change."""
         low, high = sorted((self.start, self.end))
         return max(low - value, value - high, 0.0)
 
 
 @dataclass(frozen=True)
 class Hysteresis:
-    """Neighbouring values at which the verdict on the way up and on the way down differ.
+    """Neighbouring values at which the verdicts of the upward and the downward ramp differ.
 
     Attributes
     ----------
     low, high : float
         The first and the last of these values.
     up, down : str
-        The verdicts.
+        The verdicts by direction.
     """
 
     low: float
@@ -72,30 +74,31 @@ class Hysteresis:
     down: str
 
 
-def ways(steps: Sequence[Step]) -> Mapping[str, Sequence[Step]]:
-    """Return the steps there and, if there are any, the steps back, by direction.
+def by_direction(steps: Sequence[Step]) -> Mapping[str, Sequence[Step]]:
+    """Return the forward steps and, if there are any, the steps back, by direction.
 
-    The way back begins with the last step of the way there.
+    The steps back begin with the last forward step.
     """
     if not steps:
         return {}
-    there = [step for step in steps if step.direction == steps[0].direction]
-    back = list(steps[len(there) :])
-    return {there[0].direction: there} | ({back[0].direction: [there[-1], *back]} if back else {})
+    forward = [step for step in steps if step.direction == steps[0].direction]
+    back = list(steps[len(forward) :])
+    branches = {forward[0].direction: forward}
+    return branches | ({back[0].direction: [forward[-1], *back]} if back else {})
 
 
 def regimes(steps: Sequence[Step]) -> tuple[Regime, ...]:
-    """Return the regimes of a series in the order in which they were met, way by way."""
-    found = []
-    for direction, way in ways(steps).items():
-        for verdict, group in groupby(way, key=lambda step: step.verdict):
+    """Return the regimes of a ramp in the order of its steps, direction by direction."""
+    result = []
+    for direction, branch in by_direction(steps).items():
+        for verdict, group in groupby(branch, key=lambda step: step.verdict):
             same = list(group)
-            found.append(Regime(direction, verdict, same[0].value, same[-1].value, len(same)))
-    return tuple(found)
+            result.append(Regime(direction, verdict, same[0].value, same[-1].value, len(same)))
+    return tuple(result)
 
 
 def regime_changes(steps: Sequence[Step]) -> tuple[RegimeChange, ...]:
-    """Return the changes between the regimes of a series, way by way."""
+    """Return the changes between the regimes of a ramp, direction by direction."""
     return tuple(
         RegimeChange(earlier.direction, earlier.verdict, later.verdict, earlier.end, later.start)
         for earlier, later in pairwise(regimes(steps))
@@ -104,23 +107,23 @@ def regime_changes(steps: Sequence[Step]) -> tuple[RegimeChange, ...]:
 
 
 def hysteresis(steps: Sequence[Step]) -> tuple[Hysteresis, ...]:
-    """Return the values at which the two ways end in different verdicts, from low to high."""
+    """Return the values at which both directions have different verdicts, from low to high."""
     verdicts = {
-        direction: {step.value: step.verdict for step in way}
-        for direction, way in ways(steps).items()
+        direction: {step.value: step.verdict for step in branch}
+        for direction, branch in by_direction(steps).items()
     }
     if len(verdicts) < 2:
         return ()
     up, down = verdicts["up"], verdicts["down"]
     common = [(value, up[value], down[value]) for value in sorted(up.keys() & down.keys())]
-    found = []
-    for pair, group in groupby(common, key=lambda one: one[1:]):
+    result = []
+    for pair, group in groupby(common, key=lambda point: point[1:]):
         values = [value for value, *_ in group]
         if pair[0] != pair[1]:
-            found.append(Hysteresis(values[0], values[-1], *pair))
-    return tuple(found)
+            result.append(Hysteresis(values[0], values[-1], *pair))
+    return tuple(result)
 
 
 def nearest(changes: Sequence[RegimeChange], value: float) -> RegimeChange | None:
-    """Return the change that lies nearest to a value, the earliest of several; None without any."""
+    """Return the change nearest to a value, the earliest of several; None without changes."""
     return min(changes, key=lambda change: change.distance(value), default=None)
