@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from undula import Chain, Filament, InputError, TipLoad, kicked
+from undula.analysis.linear.leading_rate import leading_rate
 from undula.models.given_shapes import pieces
-from undula.models.initial_states import leading_rate
 from undula.models.model import Model
 
 MODELS = [

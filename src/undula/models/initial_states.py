@@ -8,7 +8,6 @@ their exact length whatever the amplitude, and all starts meet the clamp.
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import lapack
 
 from undula.arrays import Array, Nodes, State
 from undula.errors import InputError, is_number
@@ -79,17 +78,6 @@ def leading_mode(model: Model) -> tuple[complex, Array]:
     values, vectors = np.linalg.eig(-np.linalg.solve(drag, stiffness))
     first = max(range(values.size), key=lambda k: (values[k].real, values[k].imag))
     return complex(values[first]), vectors[:, first]
-
-
-def leading_rate(model: Model) -> float:
-    """Return the growth rate [1/T] of the leading mode: of the straight state's own links."""
-    stiffness, drag = model.linearised()
-    # LAPACK itself: every run that ends straight asks, and numpy's checks take half as long again.
-    _, _, rates, failed = lapack.dgesv(drag, stiffness)
-    decay, _, _, _, unfinished = lapack.dgeev(rates, compute_vl=0, compute_vr=0)
-    if failed or unfinished:
-        raise np.linalg.LinAlgError("the spectrum of the straight state is not found")
-    return -float(decay.min())
 
 
 def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:

@@ -16,6 +16,7 @@ import undula as un
 from pages import ROOT
 from refusal import complaint
 from small_studies import done, study_of
+from undula.analysis.linear.leading_rate import leading_rate
 from undula.analysis.ramps.ramp import Ramp, ramp
 from undula.analysis.regimes import names, names_without_symmetry
 from undula.analysis.run_settings import Ending, Schedule
@@ -23,7 +24,6 @@ from undula.analysis.runs import credibility
 from undula.analysis.runs.run import Run
 from undula.analysis.runs.simulation import Simulation
 from undula.arrays import State
-from undula.models.initial_states import leading_rate
 from undula.models.model import Model
 
 UNDULA = str(Path(sysconfig.get_path("scripts")) / "undula")

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from undula.analysis.linear.leading_rate import leading_rate
 from undula.analysis.observables.trajectory import Motion
 from undula.analysis.regimes.verdict import STRAIGHT, UNDECIDED, Verdict
 from undula.analysis.run_settings import Schedule
@@ -22,7 +23,6 @@ from undula.analysis.runs.accuracy import Errors
 from undula.analysis.runs.settling import ROUND_OFF_INCLINATION
 from undula.analysis.states.relative_equilibrium import rotating_spectrum
 from undula.arrays import Array, Nodes, Shapes
-from undula.models.initial_states import leading_rate
 from undula.models.model import Model
 
 #: Largest relative error of the energy balance or of the lengths: five times the one hundredth that

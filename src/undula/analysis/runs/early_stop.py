@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from undula.analysis.linear.leading_rate import leading_rate
 from undula.analysis.observables.alignment import aligned_distance
 from undula.analysis.observables.shapes import displacement
 from undula.analysis.parameters import FORCE
@@ -34,7 +35,6 @@ from undula.analysis.states.relative_equilibrium import (
 )
 from undula.arrays import Array, ComplexArray, Nodes
 from undula.errors import InputError
-from undula.models.initial_states import leading_rate
 from undula.models.model import Model
 from undula.numerics.continuation.newton import newton
 
