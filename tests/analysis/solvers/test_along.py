@@ -1,13 +1,12 @@
 """A branch keeps its unknowns wherever its parameter leads, or is refused before anything runs."""
 
-import subprocess
-import sys
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
+from commands import Ask, refused
 from refusal import complaint
 from undula.analysis.linear.straight_branch import follow_straight
 from undula.analysis.parameters import changed, value_of
@@ -220,15 +219,6 @@ def test_steps_along_a_parameter_are_runs_by_themselves(
 
 
 @pytest.mark.parametrize("way", ["model.bending_ratio=1:1.5", "model.natural_curvature.k1=0:1"])
-def test_the_command_refuses_in_one_sentence(way: str) -> None:
-    main = "from undula.app.cli import main; raise SystemExit(main())"
-    command = [sys.executable, "-c", main, "follow", "spinning"]
-    done = subprocess.run(
-        [*command, "--set", "model.segments=12", "--along", way],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("\n") == 1
-    assert way.partition("=")[0] in done.stderr
+def test_the_command_refuses_in_one_sentence(way: str, ask: Ask) -> None:
+    told = refused(ask("follow", "spinning", "--set", "model.segments=12", "--along", way))
+    assert way.partition("=")[0] in told

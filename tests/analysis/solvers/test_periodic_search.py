@@ -1,15 +1,12 @@
 """What a run has come to, solved for: the answer is the run's own motion, or says why it is not."""
 
-import json
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import undula as un
+from commands import Ask, answer, refused
 from refusal import complaint
 from undula.analysis.observables.alignment import aligned_distance
 from undula.analysis.regimes.recurrence import recurrence
@@ -117,35 +114,27 @@ def test_a_guess_and_a_seed_are_refused_together(settled: un.Run) -> None:
     assert "leave one out" in complaint(lambda: un.find_periodic(THREE, settled, seed=2))
 
 
-def undula(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    command = [str(Path(sys.executable).with_name("undula")), *words]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-
-
-def test_the_command_takes_a_stored_run(tmp_path: Path) -> None:
+@pytest.mark.usefixtures("own_folder")
+def test_the_command_takes_a_stored_run(ask: Ask) -> None:
     settle = ["--set", 'time.until="settled"', "--no-movie", "--out", "r", "--json"]
-    ran = undula("run", *WINDMILL, *settle, folder=tmp_path)
-    assert ran.returncode == 0, ran.stderr
-    run = json.loads(ran.stdout)
+    run = answer(ask("run", *WINDMILL, *settle))
 
     def asked(*words: str) -> dict[str, Any]:
-        done = undula("find", "periodic", *words, "--json", folder=tmp_path)
-        assert done.returncode == 0, done.stderr
-        return dict(json.loads(done.stdout))
+        return answer(ask("find", "periodic", *words, "--json"))
 
-    answer = asked("--run", "r/run.nc")
-    assert (answer["force"], answer["links"], answer["stable"]) == (100.0, 3, True)
-    assert answer["frequency"] == pytest.approx(run["frequency"], abs=run["frequency_error"])
-    assert answer["period"] == pytest.approx(run["settled"]["period"], rel=1e-5)
+    state = asked("--run", "r/run.nc")
+    assert (state["force"], state["links"], state["stable"]) == (100.0, 3, True)
+    assert state["frequency"] == pytest.approx(run["frequency"], abs=run["frequency_error"])
+    assert state["period"] == pytest.approx(run["settled"]["period"], rel=1e-5)
     for name in ("bending_energy", "tip_radius", "tip_height"):
         for part in ("min", "max", "mean"):
             # Extremes are read between samples, those of the run of a spline.
-            assert answer[name][part] == pytest.approx(run[name][part], abs=5e-3), (name, part)
+            assert state[name][part] == pytest.approx(run[name][part], abs=5e-3), (name, part)
     # Without a run it makes the same one.
-    assert asked(*WINDMILL)["period"] == answer["period"]
+    assert asked(*WINDMILL)["period"] == state["period"]
     nearby = asked("--run", "r/run.nc", "--set", "load.force=101")
     assert (nearby["force"], nearby["stable"]) == (101.0, True)
-    assert answer["frequency"] < nearby["frequency"] < 1.02 * answer["frequency"]
+    assert state["frequency"] < nearby["frequency"] < 1.02 * state["frequency"]
 
 
 @pytest.mark.parametrize(
@@ -159,12 +148,5 @@ def test_the_command_takes_a_stored_run(tmp_path: Path) -> None:
         (["periodic", "--seed", "-1"], "--seed"),
     ],
 )
-def test_options_that_do_not_go_together_are_refused(
-    words: list[str], cure: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    from undula.app.cli import main
-
-    assert main(["find", *words]) == 2
-    said = capsys.readouterr()
-    assert (said.out, len(said.err.splitlines())) == ("", 1)
-    assert cure in said.err
+def test_options_that_do_not_go_together_are_refused(words: list[str], cure: str, ask: Ask) -> None:
+    assert cure in refused(ask("find", *words))
