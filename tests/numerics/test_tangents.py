@@ -15,11 +15,11 @@ from systems import (
     Known,
     always_accepting,
     begin,
+    carry_changes,
     choices,
     copied,
     pinned,
 )
-from uncached import uncached
 from undula.analysis.run_settings import Schedule
 from undula.arrays import Array
 from undula.models.model import Model
@@ -37,9 +37,6 @@ from undula.numerics.integration.stepper_state import (
 )
 from undula.numerics.integration.system import derivative_half_bandwidth
 from undula.numerics.integration.variational import advance_with_changes
-
-#: The loop for the systems of the tests.
-advance = uncached(advance_with_changes.py_func)
 
 FOREVER = np.inf
 #: Newton's method is taken to where differences of two runs still have six digits.
@@ -116,7 +113,7 @@ def test_changes_are_the_derivative_of_the_steps_of_known_systems(system: Known)
     told = always_accepting(choices(system, **EXACTLY))
     memory = begin(system, step=0.02, order=3, radius=0.8)
     # Newton's method leaves some 1e-12, and runs 1e-5 apart show that as some 1e-7.
-    assert disagreement(advance, system, memory, told) < 1e-6
+    assert disagreement(carry_changes, system, memory, told) < 1e-6
 
 
 @pytest.mark.parametrize(
@@ -154,11 +151,11 @@ def test_the_loop_comes_back_after_the_asked_steps_and_at_the_asked_time() -> No
     system = Known(SPINNER, 30.0)
     told, memory = choices(system), begin(system, step=1e-3)
     changes, band = np.zeros((1, memory.differences.shape[0], 3)), np.zeros((3, 7))
-    assert Status(advance(system, memory, told, changes, band, 1.0, 3)) is Status.PAUSED
+    assert Status(carry_changes(system, memory, told, changes, band, 1.0, 3)) is Status.PAUSED
     assert memory.count[STEPS] == 3
-    assert Status(advance(system, memory, told, changes, band, 1.0, ALL_STEPS)) is Status.DONE
+    assert Status(carry_changes(system, memory, told, changes, band, 1.0, ALL_STEPS)) is Status.DONE
     taken = memory.count[STEPS]
-    assert Status(advance(system, memory, told, changes, band, 1.0, ALL_STEPS)) is Status.DONE
+    assert Status(carry_changes(system, memory, told, changes, band, 1.0, ALL_STEPS)) is Status.DONE
     assert memory.count[STEPS] == taken
 
 
@@ -166,5 +163,5 @@ def test_a_trajectory_that_ends_is_told_so() -> None:
     system = Known(FOLLOWER, 10.0, ends=0.5)
     told, memory = choices(system), begin(system, step=1e-3)
     changes, band = np.zeros((1, memory.differences.shape[0], 2)), np.zeros((2, 7))
-    code = advance(system, memory, told, changes, band, 1.0, ALL_STEPS)
+    code = carry_changes(system, memory, told, changes, band, 1.0, ALL_STEPS)
     assert Status(code) is Status.STEP_TOO_SHORT

@@ -1,4 +1,4 @@
-"""Systems whose Lyapunov exponents are known, both of one type so that they compile once.
+"""Equations whose Lyapunov exponents are known, for `systems`.
 
 Lorenz (1963), unknowns (x, y, z), with sigma = 10, rho = 28, beta = 8/3:
 
@@ -12,36 +12,15 @@ Torus, two oscillators (Stuart & Landau) that turn each other, unknowns (x1, y1,
 
 radii settle, so that the exponents are 0, 0, -2 m1, -2 m2.
 """
-# ruff: noqa: ARG001
-# (what is registered for a generic function has its arguments, used or not)
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from uncached import uncached
 from undula.jit.compilation import kernel
-from undula.numerics.integration.lyapunov import Block, growth
-from undula.numerics.integration.schemes import NDF
-from undula.numerics.integration.step import options
-from undula.numerics.integration.stepper_state import start
-from undula.numerics.integration.system import RATES, implements, matrix, residual
-from undula.numerics.integration.variational import advance_with_changes
 
-LORENZ, TORUS = range(2)
 SIGMA, RHO, BETA = 10.0, 28.0, 8.0 / 3.0
-
-#: The loop for the systems of this file.
-advance = uncached(advance_with_changes.py_func)
-
-
-class Attractor(NamedTuple):
-    """A system with known exponents."""
-
-    problem: int
-    growth: tuple[float, float] = (1.0, 2.0)  # m1, m2
-    half_bandwidth = 3
 
 
 @kernel
@@ -63,7 +42,7 @@ def torus_rate(system: Any, y: Any, out: Any) -> None:
     one, two = y[0] * y[0] + y[1] * y[1], y[2] * y[2] + y[3] * y[3]
     turns = 1.0 + two, math.sqrt(3.0) - one
     for i, square in enumerate((one, two)):
-        grow, u, v = system.growth[i] - square, y[2 * i], y[2 * i + 1]
+        grow, u, v = system.growths[i] - square, y[2 * i], y[2 * i + 1]
         out[2 * i] = grow * u - turns[i] * v
         out[2 * i + 1] = grow * v + turns[i] * u
 
@@ -74,7 +53,7 @@ def torus_slope(system: Any, y: Any, out: Any) -> None:
     turns = 1.0 + two, math.sqrt(3.0) - one
     for i, square in enumerate((one, two)):
         a, b = 2 * i, 2 * i + 1
-        grow, u, v = system.growth[i] - square, y[a], y[b]
+        grow, u, v = system.growths[i] - square, y[a], y[b]
         out[a, a], out[a, b] = grow - 2.0 * u * u, -turns[i] - 2.0 * u * v
         out[b, a], out[b, b] = turns[i] - 2.0 * u * v, grow - 2.0 * v * v
         sign, other = (1.0, 2) if i == 0 else (-1.0, 0)
@@ -82,9 +61,9 @@ def torus_slope(system: Any, y: Any, out: Any) -> None:
             out[a, j], out[b, j] = -2.0 * sign * v * y[j], 2.0 * sign * u * y[j]
 
 
-@implements(residual, Attractor)
+@kernel
 def attractor_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
-    if system.problem == LORENZ:
+    if y.shape[0] == 3:
         lorenz_rate(y, out)
     else:
         torus_rate(system, y, out)
@@ -92,34 +71,14 @@ def attractor_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
         out[i] = w[i] - c * out[i]
 
 
-@implements(matrix, Attractor)
-def attractor_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
+@kernel
+def attractor_matrix(system: Any, y: Any, c: Any, band: Any) -> None:
     n = y.shape[0]
     slope = np.zeros((n, n))
-    if system.problem == LORENZ:
+    if n == 3:
         lorenz_slope(y, slope)
     else:
         torus_slope(system, y, slope)
-    band[:] = 0.0
     for i in range(n):
         for j in range(n):
             band[i, j - i + 3] = (i == j) - c * slope[i, j]
-
-
-def followed(
-    system: Attractor, y: list[float], count: int, duration: float, rtol: float = 1e-8
-) -> list[Block]:
-    """Return the growth of so many changes along the trajectory that starts at y."""
-    n = len(y)
-    memory = start(system, NDF, np.array(y), np.zeros(n + RATES), 0.0, 1e-6)
-    told = options(
-        NDF,
-        np.ones(n),
-        np.zeros(n),
-        rtol=rtol,
-        atol=rtol,
-        stale_after=0.1,
-        longest_step=math.inf,
-        frame=False,
-    )
-    return list(growth(system, memory, told, count=count, duration=duration, advance=advance))

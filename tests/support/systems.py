@@ -1,4 +1,4 @@
-"""Stiff systems with exact solutions, all of one type so that the time loop compiles once.
+"""Systems with exact solutions or exponents, all of one type so that time loops compile once.
 
 Follower (Prothero & Robinson), unknowns (u, s):
 
@@ -11,6 +11,8 @@ Bead drawn along the unit circle after a moving point, unknowns (x, y, T, s), wi
 Spinner (Stuart & Landau's normal form with a stable mode u), unknowns (x, y, u):
 
     r' = r (m - r^2),    angle' = W + b r^2,    u' = -K (u - r^2) + 2 r^2 (m - r^2);    u = r^2.
+
+Lorenz's system and a torus, see `attractors`.
 """
 # ruff: noqa: ARG001
 # (what is registered for a generic function has its arguments, used or not)
@@ -20,6 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from attractors import attractor_matrix, attractor_residual
 from uncached import uncached
 from undula.jit.compilation import kernel
 from undula.numerics.integration.schemes import NDF, BackwardDifferentiation
@@ -45,11 +48,13 @@ from undula.numerics.integration.system import (
     rotate,
 )
 from undula.numerics.integration.time_loop import advance
+from undula.numerics.integration.variational import advance_with_changes
 
-FOLLOWER, BEAD, SPINNER = range(3)
+FOLLOWER, BEAD, SPINNER, LORENZ, TORUS = range(5)
 
-#: The time loop for the systems of this file.
+#: The time loops for the systems of this file.
 run = uncached(advance.py_func)
+carry_changes = uncached(advance_with_changes.py_func)
 
 ALL_STEPS = 2**62
 
@@ -58,11 +63,12 @@ class Known(NamedTuple):
     """A system with a known solution."""
 
     problem: int
-    stiffness: float  # K
+    stiffness: float = 1.0  # K
     growth: float = 1.0  # m
     turning: float = 0.0  # W
     twist: float = 0.0  # b
     ends: float = math.inf  # time s from which on the follower's equation is not a number
+    growths: tuple[float, float] = (1.0, 2.0)  # m1, m2 of the torus
     half_bandwidth = 3
 
 
@@ -128,8 +134,10 @@ def known_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
         follower_residual(system, y, w, c, out)
     elif system.problem == BEAD:
         bead_residual(system, y, w, c, out)
-    else:
+    elif system.problem == SPINNER:
         spinner_residual(system, y, w, c, out)
+    else:
+        attractor_residual(system, y, w, c, out)
 
 
 @implements(matrix, Known)
@@ -139,8 +147,10 @@ def known_matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> N
         follower_matrix(system, y, c, band)
     elif system.problem == BEAD:
         bead_matrix(system, y, c, band)
-    else:
+    elif system.problem == SPINNER:
         spinner_matrix(system, y, c, turn, band)
+    else:
+        attractor_matrix(system, y, c, band)
 
 
 @implements(apply_drag, Known)
@@ -158,6 +168,9 @@ def known_constraint_error(system: Any, y: Any) -> Any:
 @implements(rates, Known)
 def known_rates(system: Any, y: Any, v: Any, out: Any) -> None:
     """Let the energy be u, or x of the bead, and be lost at rate 1."""
+    if system.problem > SPINNER:
+        out[:] = 0.0
+        return
     spinning = system.problem == SPINNER
     spin, inertia = y[0] * v[1] - y[1] * v[0], y[0] * y[0] + y[1] * y[1]
     out[0] = spin / inertia if spinning and inertia > 0.0 else 0.0
