@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from refusal import complaint
+from undula.analysis.solvers.quantities import quantities_of
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.state_kinds import extrapolate, with_error
 from undula.analysis.states.extrapolation import Converged, converge, extrapolated
@@ -153,7 +154,7 @@ def test_the_error_of_a_state_falls_as_the_square_of_the_number_of_links(
     load: Load, name: str
 ) -> None:
     links = np.array([20, 40, 80, 160])
-    values = np.array([getattr(solved(load, int(segments)), name) for segments in links])
+    values = np.array([quantities_of(solved(load, int(segments)))[name] for segments in links])
     differences = np.abs(np.diff(values))
     order = -np.polyfit(np.log(links[:-1]), np.log(differences), 1)[0]
     assert order == pytest.approx(2.0, abs=0.15)
