@@ -26,9 +26,9 @@ from undula.analysis.runs.run import Run
 from undula.analysis.runs.simulation import Simulation
 from undula.inputs.build import build_model, build_schedule, build_start
 from undula.inputs.input import parse_input
-from undula.sweeps.point import points
-from undula.sweeps.store import load_sweep, open_study
-from undula.sweeps.sweep import Study, read_study
+from undula.sweeps.point import point_records
+from undula.sweeps.store import load_sweep, open_sweep
+from undula.sweeps.sweep import Sweep, read_sweep
 from undula.sweeps.work_queue import SAVE_EVERY, SweepWork
 from undula.sweeps.workers import pool
 
@@ -63,13 +63,13 @@ FLAPPING = {
 }
 
 
-def study_of(folder: Path, count: int, changes: Mapping[str, str] = MappingProxyType({})) -> Study:
+def sweep_of(folder: Path, count: int, changes: Mapping[str, str] = MappingProxyType({})) -> Sweep:
     """Return a study of about so many points, with changes of its text."""
     file, text = folder / "study.toml", TEXT.format(rows=max(2, count // 100))
     for old, new in changes.items():
         text = text.replace(old, new)
     file.write_text(text, encoding="utf-8")
-    return read_study(file)
+    return read_sweep(file)
 
 
 @dataclass
@@ -97,10 +97,10 @@ class Timed(Simulation):
         return goes_on
 
 
-def phases(study: Study, number: int) -> tuple[str, Clock]:
+def phases(sweep: Sweep, number: int) -> tuple[str, Clock]:
     """Do a point in this process; return its verdict and its times."""
     marks = [time.perf_counter()]
-    wanted = parse_input(study.tables(number))
+    wanted = parse_input(sweep.tables(number))
     model = build_model(wanted)
     simulation = Timed.begin(model, build_start(wanted, model), build_schedule(wanted))
     marks.append(time.perf_counter())
@@ -114,14 +114,14 @@ def phases(study: Study, number: int) -> tuple[str, Clock]:
     return name, Clock(build, bare, asked, running - bare - asked, figures)
 
 
-def here(study: Study, count: int) -> dict[str, list[Clock]]:
+def here(sweep: Sweep, count: int) -> dict[str, list[Clock]]:
     """Return the quickest times of some points, by verdict."""
     # At random: points at equal steps would have few of the forces.
-    chosen = np.random.default_rng(1).choice(study.count, min(count, study.count), replace=False)
-    phases(study, 0)  # by now the kernels are there
+    chosen = np.random.default_rng(1).choice(sweep.count, min(count, sweep.count), replace=False)
+    phases(sweep, 0)  # by now the kernels are there
     found: dict[str, list[Clock]] = {}
     for number in chosen.tolist():
-        names, clocks = zip(*(phases(study, number) for _ in range(TIMES)), strict=True)
+        names, clocks = zip(*(phases(sweep, number) for _ in range(TIMES)), strict=True)
         quickest = (min(getattr(clock, f.name) for clock in clocks) for f in fields(Clock))
         found.setdefault(names[0], []).append(Clock(*quickest))
     return found
@@ -150,19 +150,19 @@ def integrated(tables: list[Mapping[str, Any]]) -> float:
     return time.perf_counter() - began
 
 
-def done(study: Mapping[str, Any], numbers: tuple[int, ...]) -> float:
+def done(sweep: Mapping[str, Any], numbers: tuple[int, ...]) -> float:
     """Do points as a sweep does them, in a worker; return the seconds it took."""
     began = time.perf_counter()
     while numbers:
-        _, records = points(study, numbers)
+        _, records = point_records(sweep, numbers)
         numbers = numbers[len(records) :]
     return time.perf_counter() - began
 
 
-def in_turn(study: Study, count: int) -> tuple[float, float]:
+def in_turn(sweep: Sweep, count: int) -> tuple[float, float]:
     """Return milliseconds of a bare integration and of a whole point, in one worker, in turn."""
-    chosen = np.random.default_rng(2).choice(study.count, min(count, study.count), replace=False)
-    pieces = [tuple(piece.tolist()) for piece in np.array_split(chosen, max(count // PIECE, 2))]
+    chosen = np.random.default_rng(2).choice(sweep.count, min(count, sweep.count), replace=False)
+    tasks = [tuple(task.tolist()) for task in np.array_split(chosen, max(count // PIECE, 2))]
     spent = np.zeros(2)
     with pool(1, None, print) as workers:
 
@@ -172,11 +172,11 @@ def in_turn(study: Study, count: int) -> tuple[float, float]:
                 pass
             return float(back[0][1])
 
-        ask(done, study.dump(), pieces[0][:2])  # by now all is loaded
-        for turn, piece in enumerate(pieces):
+        ask(done, sweep.dump(), tasks[0][:2])  # by now all is loaded
+        for turn, task in enumerate(tasks):
             for which in (0, 1) if turn % 2 else (1, 0):
                 whole = which == 1
-                what = (study.dump(), piece) if whole else ([study.tables(n) for n in piece],)
+                what = (sweep.dump(), task) if whole else ([sweep.tables(n) for n in task],)
                 spent[which] += ask(done if whole else integrated, *what)
     bare, whole_point = (1e3 * spent / chosen.size).tolist()
     return bare, whole_point
@@ -191,22 +191,22 @@ class Watched:
     memory: list[float] = field(default_factory=list)
 
 
-def swept(study: Study, path: Path) -> Watched:
+def swept(sweep: Sweep, path: Path) -> Watched:
     """Do a study with one worker; count from its first result on, when all is loaded."""
     watched, process = Watched(), psutil.Process()
-    store = open_study(path, study)
+    store = open_sweep(path, sweep)
     work = SweepWork(store)
     with pool(1, None, print) as workers:
         began: tuple[float, float, int] | None = None
         while work.left:
-            while workers.has_room and (piece := work.take()) is not None:
-                workers.give(piece, points, study.dump(), piece.numbers)
-            for piece, outcome in workers.come_back(0.2):
-                work.take_back(piece, outcome[1])
+            while workers.has_room and (task := work.take()) is not None:
+                workers.give(task, point_records, sweep.dump(), task.numbers)
+            for task, outcome in workers.come_back(0.2):
+                work.take_back(task, outcome[1])
             work.save(SAVE_EVERY)
-            if work.left < study.count:
+            if work.left < sweep.count:
                 began = began or (time.perf_counter(), time.process_time(), work.left)
-                part = 1.0 - work.left / study.count
+                part = 1.0 - work.left / sweep.count
                 if part >= 0.1 * (len(watched.memory) + 1):
                     watched.memory.append(process.memory_info().rss / 2**20)
         work.save()
@@ -220,16 +220,16 @@ def main() -> None:
     """Measure and print everything."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     with tempfile.TemporaryDirectory() as folder:
-        study = study_of(Path(folder), count)
-        bare = tell(here(study, SAMPLED))
-        tell(here(study_of(Path(folder), count, FLAPPING), SAMPLED // 10))
-        compared = in_turn(study, COMPARED)
-        watched = swept(study, Path(folder) / "s.zarr")
-        report(study, bare, compared, watched, Path(folder) / "s.zarr")
+        sweep = sweep_of(Path(folder), count)
+        bare = tell(here(sweep, SAMPLED))
+        tell(here(sweep_of(Path(folder), count, FLAPPING), SAMPLED // 10))
+        compared = in_turn(sweep, COMPARED)
+        watched = swept(sweep, Path(folder) / "s.zarr")
+        report(sweep, bare, compared, watched, Path(folder) / "s.zarr")
 
 
 def report(
-    study: Study, bare: float, compared: tuple[float, float], watched: Watched, path: Path
+    sweep: Sweep, bare: float, compared: tuple[float, float], watched: Watched, path: Path
 ) -> None:
     """Print the table of a sweep."""
     stored = load_sweep(path)
@@ -246,9 +246,9 @@ def report(
         "processor time of the driver": f"{watched.driver:.2f} ms a point",
         "sweep / bare": f"{watched.wall / bare:.2f}",
         "memory of the driver at each tenth": ", ".join(f"{m:.0f}" for m in watched.memory) + " MB",
-        "store": f"{len(files)} files, {sum(files) / study.count:.0f} bytes a point",
+        "store": f"{len(files)} files, {sum(files) / sweep.count:.0f} bytes a point",
     }
-    print(f"{study.count} points")
+    print(f"{sweep.count} points")
     for name, told in rows.items():
         print(f"  {name:<38} {told}")
 

@@ -7,7 +7,7 @@ from commands import Ask, answer, text
 from undula.analysis.linear.stability import method_for_all
 from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.solvers.thresholds import threshold, threshold_curve
-from undula.terminal.numbers import BODY, LINKS, digits, on_links, told_of, with_error
+from undula.terminal.numbers import BODY, LINKS, digits, on_links, with_error, with_error_of
 
 TWELVE = un.Filament(segments=12, load=un.TipLoad(75.0))
 THREE = un.Chain(3, un.TipLoad(20.0))
@@ -24,8 +24,8 @@ def test_a_number_of_links_as_they_are_has_no_plus_or_minus() -> None:
     assert on_links(187.54286239, 5e-8, 40) == "187.54286239 (40 links, solved to 5e-08)"
     assert on_links(187.54286239, None, 40, "T") == "187.543 T (40 links)"
     assert on_links(1.0, 0.1, 9, "T", "do") == "1.0 T (9 links, solved to 0.1; do)"
-    assert told_of(2.0, 0.1, {"error_of": BODY}, "T") == "2.0 ± 0.1 T"
-    assert told_of(2.0, 0.1, {"error_of": LINKS, "links": 8}, "T") == (
+    assert with_error_of(2.0, 0.1, {"error_of": BODY}, "T") == "2.0 ± 0.1 T"
+    assert with_error_of(2.0, 0.1, {"error_of": LINKS, "links": 8}, "T") == (
         "2.0 T (8 links, solved to 0.1)"
     )
 

@@ -223,7 +223,7 @@ def test_a_command_without_a_result_says_that_it_was_interrupted(
     def find(*_: object, **__: object) -> None:
         signal.raise_signal(signal.SIGTERM)
 
-    monkeypatch.setattr("undula.app.commands.find.find", find)
+    monkeypatch.setattr("undula.app.commands.find.find_state", find)
     asked = ask("find", "spinning", "--set", "model.segments=4")
     told = "undula: interrupted before there was a result; nothing has been kept\n"
     assert asked == (130, "", told)

@@ -9,11 +9,11 @@ import pytest
 import typer
 
 from refusal import complaint
-from small_studies import AXES, QUICK, study_of
+from small_sweeps import AXES, QUICK, sweep_of
 from undula.app.cli import app, main
 from undula.app.options import a_file, a_path
 from undula.inputs.file_names import any_name, file_name
-from undula.sweeps.store import open_study
+from undula.sweeps.store import open_sweep
 from without_rights import are_kept_out, run_without_rights
 
 TINY = "--set model.segments=8 --set time.until=0.02 --set time.samples=21 --no-movie"
@@ -85,7 +85,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     folder = tmp_path_factory.mktemp("paths")
     assert main(["run", *TINY.split(), "--out", str(folder)]) == 0
     (folder / "run.png").unlink()
-    open_study(folder / "study.zarr", study_of(folder, QUICK + AXES))
+    open_sweep(folder / "study.zarr", sweep_of(folder, QUICK + AXES))
     (folder / "file").write_text("")
     (folder / "loop").symlink_to("loop")
     for name, mode in (("closed", 0), ("readonly", 0o555)):
@@ -145,20 +145,20 @@ def test_a_store_that_is_read_only_is_read_and_not_written(tmp_path: Path) -> No
         pytest.skip("no folder is closed to this user, and no rights can be given up")
     store, broken = tmp_path / "s.zarr", tmp_path / "b.zarr"
     for path in (store, broken):
-        open_study(path, study_of(tmp_path, QUICK + AXES))
+        open_sweep(path, sweep_of(tmp_path, QUICK + AXES))
     closed = [store, *(path for path in store.rglob("*") if path.is_dir())]
     for path in closed:
         path.chmod(0o555)
     (broken / "status").chmod(0)
-    study = str(tmp_path / "study.toml")
+    sweep = str(tmp_path / "study.toml")
     asked = [
         ["status", str(store)],
         ["plot", str(store)],
-        ["sweep", study, "--out", str(store), "--workers", "1"],
+        ["sweep", sweep, "--out", str(store), "--workers", "1"],
         ["plot", str(store), "--out", str(store / "x.png")],
         ["plot", str(store), "--borders", "--out", str(tmp_path / "b.png")],
         ["status", str(broken)],
-        ["sweep", study, "--out", str(broken), "--workers", "1"],
+        ["sweep", sweep, "--out", str(broken), "--workers", "1"],
     ]
     done = run_without_rights(MANY, [json.dumps(asked)])
     for path in (*closed, broken / "status"):

@@ -338,7 +338,7 @@ def test_a_figure_replaces_nothing_unless_told_to(
     Path("mine.pdf").write_text("mine")
     with monkeypatch.context() as patched:
         patched.setattr(
-            "undula.app.commands.stability.ask", lambda *_: pytest.fail("it was computed")
+            "undula.app.commands.stability.analyse", lambda *_: pytest.fail("it was computed")
         )
         assert "--overwrite" in refused(
             ask("stability", "--forces", "10", "--plot", "mine.pdf", "--json")

@@ -10,7 +10,7 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from small_studies import study_of
+from small_sweeps import sweep_of
 from undula.analysis.ramps.ramp import MOST_STEPS, Ramp
 from undula.analysis.run_settings import MAX_SAMPLES, Schedule
 from undula.analysis.runs import memory_needed as room
@@ -21,7 +21,7 @@ from undula.inputs.overrides import read_toml
 from undula.inputs.ranges import parse_steps, parse_values
 from undula.inputs.sweep_table import MOST_POINTS
 from undula.sweeps import disk_space as store_room
-from undula.sweeps.store import open_study
+from undula.sweeps.store import open_sweep
 from undula.terminal.run_progress import far_too_long
 
 UNDULA = str(Path(sysconfig.get_path("scripts")) / "undula")
@@ -64,7 +64,7 @@ def test_a_study_is_refused_for_one_point_that_does_not_fit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(room, "memory", lambda: 10**9)
-    told = complaint(lambda: study_of(tmp_path, AXES.format(count=3), "time.samples=100000000"))
+    told = complaint(lambda: sweep_of(tmp_path, AXES.format(count=3), "time.samples=100000000"))
     assert "cannot run at load.force = 20.0" in told
     assert "memory" in told
 
@@ -125,8 +125,8 @@ def test_a_number_with_a_zero_too_many_is_told_its_end(tables: dict, end: float)
 
 def test_tries_values_and_steps_have_ends_that_are_told(tmp_path: Path) -> None:
     random = ('study.policy="random"', "study.tries=1000000000")
-    assert f"{MOST_POINTS}" in complaint(lambda: study_of(tmp_path, AXES.format(count=3), *random))
-    assert f"{MOST_POINTS}" in complaint(lambda: study_of(tmp_path, AXES.format(count=10**7)))
+    assert f"{MOST_POINTS}" in complaint(lambda: sweep_of(tmp_path, AXES.format(count=3), *random))
+    assert f"{MOST_POINTS}" in complaint(lambda: sweep_of(tmp_path, AXES.format(count=10**7)))
     assert f"{MOST_STEPS}" in complaint(lambda: parse_steps("--along", "load.force=0:1e9:1"))
     assert f"{MOST_STEPS}" in complaint(lambda: Ramp("load.force", (1.0,) * (MOST_STEPS + 1)))
     assert "1000000" in complaint(lambda: parse_values("--forces", "0:1:10000000"))
@@ -147,14 +147,14 @@ def test_a_file_without_end_is_not_read_for_ever() -> None:
 def test_a_study_that_cannot_fit_on_the_disk_is_refused_before_it_is_laid_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, keep: str
 ) -> None:
-    study = study_of(tmp_path, AXES.format(count=1000), f"study.keep={keep}")
+    sweep = sweep_of(tmp_path, AXES.format(count=1000), f"study.keep={keep}")
     monkeypatch.setattr(store_room, "_free", lambda _: 10_000)
-    told = complaint(lambda: open_study(tmp_path / "s.zarr", study))
+    told = complaint(lambda: open_sweep(tmp_path / "s.zarr", sweep))
     assert "1000 points" in told
     assert "10000 bytes" in told
     assert not (tmp_path / "s.zarr").exists()
     monkeypatch.undo()
-    open_study(tmp_path / "s.zarr", study)
+    open_sweep(tmp_path / "s.zarr", sweep)
 
 
 # ------------------------------------------------------------------ time

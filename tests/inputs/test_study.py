@@ -9,19 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from refusal import complaint
-from small_studies import AXES, QUICK, study_of
+from small_sweeps import AXES, QUICK, sweep_of
 from undula.inputs.input import parse_input, read_input
 from undula.storage.differences import difference
-from undula.sweeps.blocks import Blocks, chunk_shape
-from undula.sweeps.sweep import of_dump
+from undula.sweeps.chunk_grid import ChunkGrid, chunk_shape
+from undula.sweeps.sweep import sweep_from_dump
 
 RANDOM = QUICK + '[study]\npolicy = "random"\ntries = 3\n' + AXES
 
 
 def test_axes_are_varied_in_their_order_and_the_last_one_fastest(tmp_path: Path) -> None:
-    study = study_of(tmp_path, QUICK + AXES)
-    assert study.shape == (2, 5, 1)
-    loads = [study.tables(number)["load"] for number in range(study.count)]
+    sweep = sweep_of(tmp_path, QUICK + AXES)
+    assert sweep.shape == (2, 5, 1)
+    loads = [sweep.tables(number)["load"] for number in range(sweep.count)]
     assert [(load["exponent"], load["force"]) for load in loads] == [
         (exponent, force) for exponent in (0.5, 2.0) for force in (20.0, 75.0, 130.0, 185.0, 240.0)
     ]
@@ -29,53 +29,53 @@ def test_axes_are_varied_in_their_order_and_the_last_one_fastest(tmp_path: Path)
 
 
 def test_a_range_on_a_log_scale_has_constant_ratios_and_both_ends(tmp_path: Path) -> None:
-    study = study_of(tmp_path, QUICK + AXES.replace("count = 5", 'count = 5\nspacing = "log"'))
-    values = np.array(study.axes[1].values)
+    sweep = sweep_of(tmp_path, QUICK + AXES.replace("count = 5", 'count = 5\nspacing = "log"'))
+    values = np.array(sweep.axes[1].values)
     assert (values[0], values[-1]) == (20.0, 240.0)
     np.testing.assert_allclose(values[1:] / values[:-1], 12.0**0.25, rtol=1e-12)
 
 
 def test_a_point_is_the_input_that_undula_run_would_read(tmp_path: Path) -> None:
-    study = study_of(tmp_path, QUICK + AXES)
+    sweep = sweep_of(tmp_path, QUICK + AXES)
     wanted = read_input(tmp_path / "study.toml", ["load.exponent=2.0", "load.force=185.0"])
-    assert parse_input(study.tables(8)) == wanted
+    assert parse_input(sweep.tables(8)) == wanted
 
 
 def test_a_default_that_depends_on_an_axis_follows_it(tmp_path: Path) -> None:
     text = '[model]\nkind = "chain"\n[[study.axes]]\nkey = "model.links"\nvalues = [2, 5]\n'
-    study = study_of(tmp_path, text)
+    sweep = sweep_of(tmp_path, text)
     for number, links in enumerate((2, 5)):
         tables = {"model": {"kind": "chain", "links": links}}
-        assert parse_input(study.tables(number)) == parse_input(tables)
+        assert parse_input(sweep.tables(number)) == parse_input(tables)
 
 
 def test_a_study_is_made_again_from_what_a_store_keeps_of_it(tmp_path: Path) -> None:
-    study = study_of(tmp_path, RANDOM)
-    assert of_dump(json.loads(json.dumps(study.dump()))) == study
+    sweep = sweep_of(tmp_path, RANDOM)
+    assert sweep_from_dump(json.loads(json.dumps(sweep.dump()))) == sweep
 
 
 def test_a_key_can_be_changed_from_the_command_line(tmp_path: Path) -> None:
     axis = 'study.axes=[{key="model.drag_ratio", values=[1, 2]}]'
-    study = study_of(tmp_path, RANDOM, "study.seed=7", "load.force=60", axis)
-    assert study.shape == (2, 3)
-    assert study.settings["seed"] == 7
-    assert study.tables(0)["load"]["force"] == 60.0
+    sweep = sweep_of(tmp_path, RANDOM, "study.seed=7", "load.force=60", axis)
+    assert sweep.shape == (2, 3)
+    assert sweep.settings["seed"] == 7
+    assert sweep.tables(0)["load"]["force"] == 60.0
 
 
 def test_random_starts_depend_on_seed_point_and_try_alone(tmp_path: Path) -> None:
-    study = study_of(tmp_path, RANDOM)
-    starts = [study.tables(number)["start"] for number in range(study.count)]
-    assert len({start["seed"] for start in starts}) == study.count
-    assert [study.seed(number) for number in range(study.count)] == [s["seed"] for s in starts]
-    again, other = study_of(tmp_path, RANDOM), study_of(tmp_path, RANDOM, "study.seed=2")
-    assert [again.tables(number)["start"] for number in range(study.count)] == starts
+    sweep = sweep_of(tmp_path, RANDOM)
+    starts = [sweep.tables(number)["start"] for number in range(sweep.count)]
+    assert len({start["seed"] for start in starts}) == sweep.count
+    assert [sweep.seed(number) for number in range(sweep.count)] == [s["seed"] for s in starts]
+    again, other = sweep_of(tmp_path, RANDOM), sweep_of(tmp_path, RANDOM, "study.seed=2")
+    assert [again.tables(number)["start"] for number in range(sweep.count)] == starts
     assert other.tables(0)["start"]["seed"] != starts[0]["seed"]
-    parse_input(study.tables(0))
+    parse_input(sweep.tables(0))
 
 
 def test_amplitudes_of_random_starts_are_spread_evenly_over_their_decades(tmp_path: Path) -> None:
-    study = study_of(tmp_path, RANDOM, "study.tries=400")
-    drawn = [study.tables(number)["start"]["amplitude"] for number in range(0, study.count, 2)]
+    sweep = sweep_of(tmp_path, RANDOM, "study.tries=400")
+    drawn = [sweep.tables(number)["start"]["amplitude"] for number in range(0, sweep.count, 2)]
     parts = np.histogram(np.log10(drawn), bins=3, range=(-3.0, 0.0))[0] / len(drawn)
     # The share of a third, of 2000 draws, is known to 0.01; five of these are hardly exceeded.
     np.testing.assert_allclose(parts, 1.0 / 3.0, atol=0.05)
@@ -84,7 +84,7 @@ def test_amplitudes_of_random_starts_are_spread_evenly_over_their_decades(tmp_pa
 
 
 def test_a_run_of_a_file_with_a_study_is_its_base(tmp_path: Path) -> None:
-    study_of(tmp_path, RANDOM)
+    sweep_of(tmp_path, RANDOM)
     assert read_input(tmp_path / "study.toml").load.exponent == 1.0
 
 
@@ -171,28 +171,28 @@ def test_a_wrong_study_is_refused_in_one_sentence_before_anything_runs(
     case: str, tmp_path: Path
 ) -> None:
     text, cure = REFUSED[case]
-    assert cure in complaint(lambda: study_of(tmp_path, QUICK + text))
+    assert cure in complaint(lambda: sweep_of(tmp_path, QUICK + text))
 
 
 @given(
     shape=st.lists(st.integers(1, 12), min_size=2, max_size=4),
     point_bytes=st.sampled_from([8, 10**5, 10**6, 10**8]),
-    whole_lines=st.booleans(),
+    whole_rows=st.booleans(),
 )
-def test_blocks_follow_one_another_and_hold_every_point_once(
-    shape: list[int], point_bytes: int, whole_lines: bool
+def test_chunks_follow_one_another_and_hold_every_point_once(
+    shape: list[int], point_bytes: int, whole_rows: bool
 ) -> None:
-    blocks = Blocks(
-        tuple(shape), chunk_shape(shape, point_bytes=point_bytes, whole_lines=whole_lines)
+    chunks = ChunkGrid(
+        tuple(shape), chunk_shape(shape, point_bytes=point_bytes, whole_rows=whole_rows)
     )
     numbers = np.arange(np.prod(shape)).reshape(shape)
     ends = [0]
-    for block in range(len(blocks)):
-        inside = blocks.numbers(block)
+    for chunk in range(len(chunks)):
+        inside = chunks.numbers(chunk)
         assert inside.start == ends[-1]
         ends.append(inside.stop)
-        assert numbers[blocks.region(block)].ravel().tolist() == list(inside)
-        if whole_lines:
+        assert numbers[chunks.region(chunk)].ravel().tolist() == list(inside)
+        if whole_rows:
             assert len(inside) % (shape[-1] * shape[-2]) == 0
     assert ends[-1] == numbers.size
 

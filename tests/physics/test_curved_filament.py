@@ -179,7 +179,7 @@ def test_a_result_is_stored_and_goes_on(twist: str, tmp_path: Path) -> None:
     )
     path = tmp_path / "run.nc"
     running.compute(jobs.begin(wanted, path), math.inf, lyapunov=False)
-    running.compute(jobs.take_up(path, 0.02), math.inf, lyapunov=False)
+    running.compute(jobs.resumed(path, 0.02), math.inf, lyapunov=False)
     stored = load_result(path)
     assert stored.sizes["time"] == 21
     model = build_model(wanted)

@@ -19,17 +19,12 @@ FACTORIES = SOURCE / "models" / "rod"
 LONG = {
     "analysis/runs/simulation.py: advance",
     "analysis/runs/finite_separation.py: finite_separation",
-    "app/commands/find.py: state_answer",
-    "app/commands/threshold.py: tell_thresholds",
-    "app/questions.py: follow",
-    "app/questions.py: threshold",
-    "app/reproduction.py: reproduce",
-    "app/viewing.py: plot",
+    "app/commands/threshold.py: answer_threshold_curve",
+    "app/solving_commands.py: follow",
+    "app/solving_commands.py: threshold",
     "reproduction/figures/exponents.py: lyapunov",
     "reproduction/figures/frequencies.py: _draw_panel",
     "reproduction/figures/frequencies.py: frequencies",
-    "reproduction/report/page.py: write_report",
-    "reproduction/reproduce.py: reproduce",
 }
 
 

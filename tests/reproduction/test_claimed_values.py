@@ -11,10 +11,10 @@ from refusal import complaint
 from small_catalogue import small_catalogue
 from undula.app.cli import main
 from undula.reproduction.claims.catalogue import CATALOGUE, Claim, Item, catalogue, task_of
-from undula.reproduction.claims.evaluate import Answer
+from undula.reproduction.claims.evaluate import ClaimAnswer
 from undula.reproduction.claims.stated_values import Values, other_values, values_of, values_of_call
 from undula.reproduction.report.claim_table import NOT_JUDGED, row_of
-from undula.reproduction.tasks.task import Job, jobs_of
+from undula.reproduction.tasks.task import ReproductionTask, tasks_of
 
 ITEMS = catalogue()
 CLAIMS = [(name, claim) for name, item in ITEMS.items() for claim in item.claims]
@@ -136,14 +136,14 @@ def test_a_task_that_was_changed_judges_nothing(tmp_path: Path) -> None:
     """The row looks at the command that was carried out, whatever the catalogue promises."""
     item: Item = ITEMS["transition"]
     claim = next(one for one in item.claims if one.name == "spins-below")
-    answers = {"below": Answer({"verdict": "spinning"})}
-    jobs = jobs_of(ITEMS, CATALOGUE / "inputs", tmp_path, quick=True)
+    answers = {"below": ClaimAnswer({"verdict": "spinning"})}
+    jobs = tasks_of(ITEMS, CATALOGUE / "inputs", tmp_path, quick=True)
     options = {"quick": True, "wanted": True}
     row = row_of("transition", item, claim, answers, jobs, **options)
     assert (row["verdict"], row["as_expected"]) == ("confirmed", True)
     job = jobs["transition/below"]
     words = tuple(word.replace("load.force=180", "load.force=150") for word in job.command)
-    jobs["transition/below"] = Job(**{**vars(job), "command": words})
+    jobs["transition/below"] = ReproductionTask(**{**vars(job), "command": words})
     row = row_of("transition", item, claim, answers, jobs, **options)
     assert (row["verdict"], row["as_expected"], row["value"]) == (NOT_JUDGED, None, None)
     assert "150" in row["reason"]

@@ -8,12 +8,12 @@ import pytest
 
 from refusal import complaint
 from small_catalogue import small_catalogue
-from undula.app.reproduction import RUN_COMMAND
+from undula.app.reproduce_command import RUN_COMMAND
 from undula.models.filament import Filament
-from undula.reproduction.claims import errata as slips
+from undula.reproduction.claims import errata
 from undula.reproduction.claims import evaluate as claims
 from undula.reproduction.claims.catalogue import CATALOGUE, Claim, catalogue, paper_of
-from undula.reproduction.claims.evaluate import Answer, judge
+from undula.reproduction.claims.evaluate import ClaimAnswer, judge
 from undula.reproduction.claims.measures import (
     at,
     crossing,
@@ -23,7 +23,7 @@ from undula.reproduction.claims.measures import (
     peak,
     peak_error,
 )
-from undula.reproduction.tasks.task import carry_out
+from undula.reproduction.tasks.task import run_captured
 
 ITEMS = catalogue()
 ROWS = [(name, claim) for name, item in ITEMS.items() for claim in item.claims]
@@ -35,7 +35,7 @@ def claim(**keys) -> Claim:
 
 
 def verdict(told: Claim, value) -> str | None:
-    return judge(told, {"it": Answer({"value": value})}).verdict
+    return judge(told, {"it": ClaimAnswer({"value": value})}).verdict
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_a_range_is_held_against_the_one_that_is_stated(found, expected) -> None
 
 def test_two_ways_that_differ_leave_a_claim_unchecked() -> None:
     told = claim(agrees_with="it.other", agrees_within=0.1)
-    outcome = judge(told, {"it": Answer({"value": 2.0, "other": 2.5})})
+    outcome = judge(told, {"it": ClaimAnswer({"value": 2.0, "other": 2.5})})
     assert outcome.verdict is None
     assert "2.5" in outcome.reason
 
@@ -78,17 +78,17 @@ def test_two_ways_that_differ_leave_a_claim_unchecked() -> None:
 @pytest.mark.parametrize("value", [None, float("nan")])
 def test_what_was_not_found_confirms_nothing(value) -> None:
     assert verdict(claim(), value) is None
-    assert judge(claim(value="it.missing"), {"it": Answer({})}).verdict is None
+    assert judge(claim(value="it.missing"), {"it": ClaimAnswer({})}).verdict is None
 
 
 def test_an_expression_with_an_unknown_word_is_refused() -> None:
-    sentence = complaint(lambda: judge(claim(value="open('x')"), {"it": Answer({})}))
+    sentence = complaint(lambda: judge(claim(value="open('x')"), {"it": ClaimAnswer({})}))
     assert "open" in sentence
 
 
 def test_rows_of_an_answer_are_arrays() -> None:
     points = [{"load.force": 1.0, "energy": {"max": 2.0}}, {"load.force": None, "energy": None}]
-    rows = Answer({"points": points}).points
+    rows = ClaimAnswer({"points": points}).points
     assert rows["energy/max"] == pytest.approx([2.0, np.nan], nan_ok=True)
     assert rows["load.force"] == pytest.approx([1.0, np.nan], nan_ok=True)
 
@@ -104,13 +104,13 @@ def test_curves_are_read_between_their_points() -> None:
     assert first_present(places, np.where(places < 2.1, np.nan, 1.0)) == [2.25, 0.25]
 
 
-def test_the_slips_are_those_of_independent_formulas() -> None:
-    assert slips.second_moment_over_area_squared() == pytest.approx(1.0 / (4.0 * np.pi))
-    assert slips.twist_over_bending(0.25) == pytest.approx(0.8)
-    assert slips.springs_of_chain(5) == pytest.approx(5.0)
-    assert slips.power_of_length_in_chain_time() == pytest.approx(2.0)
-    assert slips.rank_of_angles_at_straight() == 1
-    assert slips.rank_of_test_functions(4) == 1
+def test_the_errata_are_those_of_independent_formulas() -> None:
+    assert errata.second_moment_over_area_squared() == pytest.approx(1.0 / (4.0 * np.pi))
+    assert errata.twist_over_bending(0.25) == pytest.approx(0.8)
+    assert errata.springs_of_chain(5) == pytest.approx(5.0)
+    assert errata.power_of_length_in_chain_time() == pytest.approx(2.0)
+    assert errata.rank_of_angles_at_straight() == 1
+    assert errata.rank_of_test_functions(4) == 1
 
 
 def test_the_catalogue_has_a_claim_for_all_that_matters() -> None:
@@ -127,7 +127,7 @@ def test_a_claim_is_computed_from_tasks(name: str, told: Claim) -> None:
     nodes = [node for text in told.expressions for node in ast.walk(ast.parse(text.strip()))]
     bound = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
     assert told.asks - bound <= known | claims._WORDS.keys()
-    assert told.asks & (known | set(slips.__all__))
+    assert told.asks & (known | set(errata.__all__))
 
 
 @pytest.mark.parametrize(("name", "told"), ROWS, ids=[f"{name}-{c.name}" for name, c in ROWS])
@@ -137,7 +137,7 @@ def test_a_number_has_an_error(name: str, told: Claim) -> None:
 
 
 def test_a_wrong_published_value_changes_the_verdict(tmp_path: Path) -> None:
-    answers = {"onset": Answer(carry_out(RUN_COMMAND, ("stability",))["answer"])}
+    answers = {"onset": ClaimAnswer(run_captured(RUN_COMMAND, ("stability",))["answer"])}
     folder = small_catalogue(tmp_path / "right")
     wrong = small_catalogue(tmp_path / "wrong", onset=("published = 37.7", "published = 38.7"))
     assert judge(catalogue(folder)["onset"].claims[0], answers).verdict == "confirmed"
@@ -151,13 +151,15 @@ def test_a_perturbed_coefficient_of_the_equations_changes_verdicts(monkeypatch, 
     command = [word.replace('"', "").replace("\\", "") for word in command]
 
     def outcome() -> str | None:
-        answer = carry_out(RUN_COMMAND, tuple(command))["answer"]
-        return judge(asked["flaps-above"], {"above": Answer(answer)}).verdict
+        answer = run_captured(RUN_COMMAND, tuple(command))["answer"]
+        return judge(asked["flaps-above"], {"above": ClaimAnswer(answer)}).verdict
 
     assert outcome() == "confirmed"
     right = Filament.system.func
     # The drag along the links as large as that across them: spinning is lost later.
-    monkeypatch.setattr(Filament, "system", property(lambda self: right(self)._replace(lag=0.0)))
+    monkeypatch.setattr(
+        Filament, "system", property(lambda self: right(self)._replace(anisotropy=0.0))
+    )
     assert outcome() == "corrected"
 
 

@@ -21,7 +21,7 @@ from undula.models.loads.analytic import LinearLoad, PowerLoad
 from undula.models.units import FILAMENT_UNITS, chain_units
 from undula.reproduction.claims.catalogue import Figure as Shown
 from undula.reproduction.claims.catalogue import catalogue
-from undula.reproduction.claims.evaluate import Answer
+from undula.reproduction.claims.evaluate import ClaimAnswer
 from undula.reproduction.figures.bistability import common_intervals
 from undula.reproduction.figures.branch_panels import read_pair
 from undula.reproduction.figures.by_name import VIEWS
@@ -508,7 +508,7 @@ def test_names_of_many_verdicts_stand_in_as_many_rows_as_hold_them() -> None:
 
 def done(folder: Path, answer: dict[str, Any]) -> Any:
     """What of a job that is done matters here."""
-    return SimpleNamespace(folder=folder, kept=lambda: {"answer": answer})
+    return SimpleNamespace(folder=folder, stored=lambda: {"answer": answer})
 
 
 def test_a_view_is_given_stored_datasets_and_otherwise_plain_answers(
@@ -525,7 +525,7 @@ def test_a_view_is_given_stored_datasets_and_otherwise_plain_answers(
 
     monkeypatch.setitem(VIEWS, "seen", view)  # type: ignore[arg-type]
     shown = Shown(name="one", shows="", caption="", view="seen", of=["told", "stored"])
-    wrapped = {name: Answer(answers[name], jobs[name].folder) for name in answers}
+    wrapped = {name: ClaimAnswer(answers[name], jobs[name].folder) for name in answers}
     ending, content = report_figures._content(shown, wrapped, jobs)
     assert ending == ".svg"
     assert b"<svg" in content

@@ -18,15 +18,15 @@ import zarr
 
 import damage
 import undula as un
-from damage import AGAIN, KINDS, SAME, TOLD, command, job, keep_answer, make_run, make_study, study
+from damage import AGAIN, KINDS, SAME, TOLD, command, job, keep_answer, make_run, make_sweep, sweep
 from refusal import complaint
-from small_studies import work_off
+from small_sweeps import work_off
 from undula.app.cli import main
-from undula.reproduction.tasks.task import Job
+from undula.reproduction.tasks.task import ReproductionTask
 from undula.storage import trial_reading
 from undula.storage.seal import Condition, condition
 from undula.storage.unchecked import StoredWarning
-from undula.sweeps.store import load_sweep, open_study
+from undula.sweeps.store import load_sweep, open_sweep
 from undula.sweeps.work_queue import SweepWork
 
 UNDULA = Path(sysconfig.get_path("scripts")) / "undula"
@@ -39,7 +39,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give a folder with a run and a study, to be copied."""
     folder = tmp_path_factory.mktemp("made")
     make_run(folder)
-    make_study(folder)
+    make_sweep(folder)
     return folder
 
 
@@ -192,7 +192,7 @@ def test_a_file_without_checksum_that_makes_hdf5_hang_is_ended(
     slow.mkdir()
     (slow / "h5py.py").write_text("while True: pass\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(slow))
-    assert not trial_reading._tried(run.read_bytes())
+    assert not trial_reading._succeeds(run.read_bytes())
 
 
 @pytest.mark.filterwarnings("ignore:.*carries no checksum")
@@ -236,8 +236,8 @@ def test_points_of_a_damaged_or_missing_chunk_are_not_done_and_done_again(
     assert (found["status"] == 0).all()
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("undula.sweeps.work_queue.warn_damaged", lambda *_: None)
-        again = open_study(store, study(made, "period"))
-        work_off(SweepWork(again), again.study)
+        again = open_sweep(store, sweep(made, "period"))
+        work_off(SweepWork(again), again.sweep)
     xr.testing.assert_identical(
         load_sweep(store).load().drop_vars("seconds"), whole.drop_vars("seconds")
     )
@@ -259,7 +259,7 @@ def test_either_copy_of_what_a_store_says_of_itself_will_do_and_the_other_is_men
     for file in store.glob(files):
         flip(file)
     xr.testing.assert_identical(load_sweep(store).load(), whole)
-    SweepWork(open_study(store, study(made, "period")))
+    SweepWork(open_sweep(store, sweep(made, "period")))
     xr.testing.assert_identical(xr.open_zarr(store).load(), xr.open_zarr(made / "s.zarr").load())
 
 
@@ -319,7 +319,7 @@ def test_a_study_that_python_stored_again_is_read_and_drawn_but_not_gone_on_with
     assert main(["status", str(path)]) == 0
     if path.is_dir():
         assert main(["plot", str(path)]) == 0
-        told = complaint(lambda: open_study(path, study(made, "period")))
+        told = complaint(lambda: open_sweep(path, sweep(made, "period")))
         assert "can be drawn but not gone on with" in told
 
 
@@ -360,7 +360,7 @@ def test_a_sweep_in_processes_of_its_own_does_damaged_points_again(store: Path, 
 # ---------------------------------------------------------------- what a report keeps
 
 
-def kept_job(folder: Path) -> Job:
+def kept_job(folder: Path) -> ReproductionTask:
     keep_answer(folder)
     return job(folder)
 

@@ -17,13 +17,13 @@ from matplotlib.figure import Figure
 from commands import PATIENCE, Ask, answer, refused, started
 from refusal import complaint
 from small_catalogue import small_catalogue
-from small_studies import AXES, QUICK, study_of
+from small_sweeps import AXES, QUICK, sweep_of
 from undula.app.cli import main
-from undula.reproduction.tasks.folder import MARK, report_claimed
+from undula.reproduction.tasks.folder import MARK, locked_report
 from undula.storage.atomic import write_whole
 from undula.storage.marks import carries_mark
 from undula.storage.outputs import claimed
-from undula.sweeps.store import open_study
+from undula.sweeps.store import open_sweep
 from undula.views import movie
 from undula.views.common.figure_file import figure_bytes
 
@@ -134,7 +134,7 @@ def test_a_file_of_others_serves_as_a_lock_and_stays_as_it_is() -> None:
 
 
 def test_a_link_in_place_of_the_lock_of_a_store_is_not_followed() -> None:
-    store = open_study(Path("s.zarr"), study_of(Path(), QUICK + AXES))
+    store = open_sweep(Path("s.zarr"), sweep_of(Path(), QUICK + AXES))
     Path("mine").write_bytes(MINE)
     Path("s.zarr/.lock").symlink_to(Path("mine").absolute())
     assert "is a link" in complaint(lambda: ExitStack().enter_context(store.alone()))
@@ -143,7 +143,7 @@ def test_a_link_in_place_of_the_lock_of_a_store_is_not_followed() -> None:
     before = set(Path("s.zarr").iterdir())
     with store.alone():
         assert "at work on s.zarr" in complaint(
-            lambda: ExitStack().enter_context(open_study(store.path, store.study).alone())
+            lambda: ExitStack().enter_context(open_sweep(store.path, store.sweep).alone())
         )
     assert set(Path("s.zarr").iterdir()) == before
 
@@ -325,7 +325,7 @@ def test_views_beside_a_result_are_renewed_if_they_are_ours(
 
 
 def test_the_figure_of_a_study_is_renewed_if_it_is_ours(ask: Ask) -> None:
-    open_study(Path("s.zarr"), study_of(Path(), QUICK + AXES))
+    open_sweep(Path("s.zarr"), sweep_of(Path(), QUICK + AXES))
     Path("s.png").write_bytes(MINE)
     assert "s.png does not carry the mark" in refused(ask("plot", "s.zarr"))
     assert Path("s.png").read_bytes() == MINE
@@ -351,13 +351,13 @@ def test_an_answer_is_told_where_its_figure_cannot_be_written(
 ) -> None:
     from undula.app.commands import stability
 
-    before = stability.ask
+    before = stability.analyse
 
     def meanwhile(*_: object) -> object:
         Path("figure.png").write_bytes(MINE)
         return before(*_)
 
-    monkeypatch.setattr(stability, "ask", meanwhile)
+    monkeypatch.setattr(stability, "analyse", meanwhile)
     asked = ask("stability", "--plot", "figure.png", "--json")
     found = answer(asked, status=3)
     assert found["hopf_force"] > 0.0
@@ -383,7 +383,7 @@ def test_files_of_others_in_a_report_are_told_and_stay(ask: Ask) -> None:
     words = ["reproduce", "onset", "--catalogue", "catalogue", "--workers", "1"]
     small_catalogue(Path("catalogue"))
     task = Path("report/data/onset/onset")
-    with report_claimed(Path("report")):
+    with locked_report(Path("report")):
         assert "at work" in refused(ask(*words))
     task.mkdir(parents=True)
     for name in (task / "onset.svg", task / "measured.csv", Path("report/index.html")):

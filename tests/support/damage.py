@@ -24,17 +24,17 @@ import numpy as np
 import xarray as xr
 
 import undula as un
-from small_studies import QUICK, study_of, work_off
+from small_sweeps import QUICK, sweep_of, work_off
 from undula.analysis.maps.stability_boundaries import StabilityBoundaries
 from undula.analysis.maps.stability_intervals import Change, StabilityIntervals
 from undula.app.cli import main
 from undula.errors import InputError
-from undula.reproduction.claims.catalogue import Task
-from undula.reproduction.tasks.task import Job
+from undula.reproduction.claims.catalogue import TaskEntry
+from undula.reproduction.tasks.task import ReproductionTask
 from undula.storage.ramp_file import stored_steps
 from undula.storage.unchecked import StoredWarning
-from undula.sweeps.boundary_cache import keep_borders, kept_columns
-from undula.sweeps.store import open_study
+from undula.sweeps.boundary_cache import read_boundaries, write_boundaries
+from undula.sweeps.store import open_sweep
 from undula.sweeps.work_queue import SweepWork
 
 #: How a reading ends: as without damage, refused in a sentence, computed again; or wrongly.
@@ -177,25 +177,25 @@ def read_steps(folder: Path) -> Any:
     return as_bytes(stored), len(stored_steps(stored))
 
 
-def make_study(folder: Path, keep: str = "period") -> None:
-    store = open_study(folder / "s.zarr", study(folder, keep))
-    work_off(SweepWork(store), store.study)
+def make_sweep(folder: Path, keep: str = "period") -> None:
+    store = open_sweep(folder / "s.zarr", sweep(folder, keep))
+    work_off(SweepWork(store), store.sweep)
 
 
-def make_study_with_runs(folder: Path) -> None:
-    make_study(folder, "run")
+def make_sweep_with_runs(folder: Path) -> None:
+    make_sweep(folder, "run")
 
 
-def study(folder: Path, keep: str) -> Any:
+def sweep(folder: Path, keep: str) -> Any:
     axes = '\n[[study.axes]]\nkey = "load.force"\nvalues = [60.0, 90.0, 120.0]\n'
-    return study_of(folder, f'{QUICK}[study]\nkeep = "{keep}"\n{axes}')
+    return sweep_of(folder, f'{QUICK}[study]\nkeep = "{keep}"\n{axes}')
 
 
 def gone_on_with(folder: Path, keep: str = "period") -> Any:
     """Read a study, then do again what is damaged of it, and read that."""
-    before = read_study(folder)
-    store = open_study(folder / "s.zarr", study(folder, keep))
-    work_off(SweepWork(store), store.study)
+    before = read_sweep(folder)
+    store = open_sweep(folder / "s.zarr", sweep(folder, keep))
+    work_off(SweepWork(store), store.sweep)
     runs = {path.name: path.read_bytes() for path in (store.path / "runs").glob("*.nc")}
     after = un.load_sweep(store.path).load()
     done = (before["status"] == 1).values
@@ -214,7 +214,7 @@ def gone_on_with(folder: Path, keep: str = "period") -> Any:
     return shown, as_bytes(after.drop_vars("seconds")), runs
 
 
-def read_study(folder: Path) -> xr.Dataset:
+def read_sweep(folder: Path) -> xr.Dataset:
     return un.load_sweep(folder / "s.zarr").load()
 
 
@@ -223,31 +223,33 @@ def gone_on_with_runs(folder: Path) -> Any:
 
 
 def make_borders(folder: Path) -> None:
-    make_study(folder)
+    make_sweep(folder)
     state = StabilityIntervals(
         "spinning", 37.5, ((37.5, 187.2),), 240.0, lost=Change(187.2, 1e-8, 4.1)
     )
     borders = StabilityBoundaries(None, (float("nan"),), 240.0, ({"spinning": state},))
-    keep_borders(folder / "s.zarr", read_study(folder), borders)
+    write_boundaries(folder / "s.zarr", read_sweep(folder), borders)
 
 
 def kept_borders(folder: Path) -> Any:
-    return kept_columns(folder / "s.zarr", read_study(folder)) or None
+    return read_boundaries(folder / "s.zarr", read_sweep(folder)) or None
 
 
-def job(folder: Path) -> Job:
-    task = Task(call="stability")
-    return Job("onset", "onset", task, ("stability",), folder, "7" * 64, frozenset(), True)
+def job(folder: Path) -> ReproductionTask:
+    entry = TaskEntry(call="stability")
+    return ReproductionTask(
+        "onset", "onset", entry, ("stability",), folder, "7" * 64, frozenset(), True
+    )
 
 
 def keep_answer(folder: Path) -> None:
     numbers = [{"force": 37.69491 * k, "error": 3e-9 * k} for k in range(20)]
     job(folder).prepare()
-    job(folder).keep({"status": 0, "answer": {"later": numbers}, "said": "", "seconds": 0.5})
+    job(folder).store({"status": 0, "answer": {"later": numbers}, "said": "", "seconds": 0.5})
 
 
 def kept_answer(folder: Path) -> Any:
-    found = job(folder).kept()
+    found = job(folder).stored()
     job(folder).prepare()
     return found
 
@@ -267,8 +269,8 @@ KINDS = {
     "checkpoint": Kind(make_run, "run.nc", resumed),
     "annotated checkpoint": Kind(annotate, "run.nc", resumed),
     "steps": Kind(make_steps, "steps.nc", read_steps),
-    "store": Kind(make_study, "s.zarr/**/*", gone_on_with),
-    "store of runs": Kind(make_study_with_runs, "s.zarr/**/*", gone_on_with_runs),
+    "store": Kind(make_sweep, "s.zarr/**/*", gone_on_with),
+    "store of runs": Kind(make_sweep_with_runs, "s.zarr/**/*", gone_on_with_runs),
     "borders": Kind(make_borders, "s.zarr/borders.json", kept_borders),
     "answer": Kind(keep_answer, "*", kept_answer),
 }

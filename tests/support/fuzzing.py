@@ -14,7 +14,7 @@ import typer
 from hypothesis import strategies as st
 
 from undula.app.cli import app
-from undula.inputs.input import StabilityInput, StudyInput
+from undula.inputs.input import StabilityInput, SweepInput
 
 #: Numbers that people give, and those on which programs break.
 USUAL = ("1", "2", "0.5", "8", "40", "75", "200", "0.01")
@@ -81,7 +81,7 @@ def numbers() -> st.SearchStrategy[str]:
 def keys_of_the_input() -> dict[str, tuple[str, ...]]:
     """Return every key of an input file, with the words that it takes."""
     found: dict[str, tuple[str, ...]] = {}
-    for record in (StudyInput, StabilityInput):
+    for record in (SweepInput, StabilityInput):
         for table, field in record.model_fields.items():
             for key, inner in field.annotation.model_fields.items():
                 found[f"{table}.{key}"] = tuple(_literals(inner.annotation))
@@ -144,7 +144,7 @@ class Files:
         (folder / "good.toml").write_text("[load]\nforce = 60.0\n")
         (folder / "bad.toml").write_text("[load\n")
         (folder / "zeros.nc").write_bytes(bytes(4096))
-        self.inputs, self.studies = names("good.toml"), names("study.toml")
+        self.inputs, self.sweeps = names("good.toml"), names("study.toml")
         self.runs, self.stores = names("run.nc"), names("store.zarr")
         self.new_figures = names("new.png", "new.pdf", "new.svg", "new.mp4", "new.html")
         self.new_folders = names("new", "other/new")
@@ -228,7 +228,7 @@ def _sound(command: str, files: Files) -> Mapping[str, st.SearchStrategy[str]]:
     words = st.sampled_from(SOUND_WORDS.get(command, WORDS))
     read = {
         "step": files.inputs,
-        "sweep": files.studies,
+        "sweep": files.sweeps,
         "plot": st.one_of(files.runs, files.stores),
     }
     outs = {"run": files.new_folders, "step": files.new_folders, "sweep": files.stores}

@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 import pytest
 
 from pages import ROOT
-from small_studies import done, study_of
+from small_sweeps import done, sweep_of
 from undula.analysis.parameters import changed, value_of
 from undula.analysis.solvers.state_kinds import kind_by_name
 from undula.analysis.solvers.thresholds import THRESHOLDS
@@ -44,7 +44,7 @@ def results_in(folder: Path) -> None:
     for links in range(2, 7):
         along = ["--along", "load.force=1:2:1", "--out", f"results/chain{links}"]
         assert main(["step", *FEW_LINKS, f"model.links={links}", *along]) == 0
-    done(study_of(folder, STUDY), folder / "results" / "point-loads.zarr")
+    done(sweep_of(folder, STUDY), folder / "results" / "point-loads.zarr")
 
 
 class BegunError(Exception):
@@ -83,18 +83,18 @@ def _asks(question: Any) -> NoReturn:
 
 BEGINNINGS = {
     "undula.app.commands.run_job.begin": _begins,
-    "undula.app.commands.run_job.take_up": _begins,
-    "undula.app.commands.step.step_along": _begins,
-    "undula.app.commands.stability.ask": _asks,
+    "undula.app.commands.run_job.resumed": _begins,
+    "undula.app.commands.step.run_ramp": _begins,
+    "undula.app.commands.stability.analyse": _asks,
     "undula.app.commands.find_start.load_result": _begins,
-    "undula.app.commands.find.find": _finds,
+    "undula.app.commands.find.find_state": _finds,
     "undula.app.commands.follow.follow_along": _follows,
     "undula.app.commands.threshold.answer_threshold": _tells,
     "undula.app.commands.threshold.answer_threshold_curve": _tells,
-    "undula.app.commands.sweep.open_study": _begins,
+    "undula.app.commands.sweep.open_sweep": _begins,
     "undula.app.commands.sweep.load_sweep": _begins,
-    "undula.app.commands.plot_sweep.plot_study": _begins,
-    "undula.reproduction.reproduce.jobs_of": _begins,
+    "undula.app.commands.plot_sweep.plot_sweep": _begins,
+    "undula.reproduction.reproduce.tasks_of": _begins,
     "undula.storage.run_file.load_result": _begins,
 }
 

@@ -13,12 +13,12 @@ from zarr.storage import LocalStore
 
 import undula as un
 from refusal import complaint
-from small_studies import (
+from small_sweeps import (
     AXES,
     QUICK,
     differing,
     done,
-    study_of,
+    sweep_of,
     verdicts,
     work_off,
     written_in_order,
@@ -26,12 +26,12 @@ from small_studies import (
 from undula.analysis.observables.shapes import mean_position
 from undula.analysis.run_settings import Ending
 from undula.analysis.runs.simulation import Simulation
-from undula.app.commands.sweep_text import study_answer
+from undula.app.commands.sweep_text import sweep_answer
 from undula.inputs.build import build_model, build_start
 from undula.inputs.input import parse_input
-from undula.sweeps.blocks import MOST
-from undula.sweeps.point import point, points
-from undula.sweeps.store import load_sweep, open_study
+from undula.sweeps.chunk_grid import MOST_POINTS_OF_CHUNK
+from undula.sweeps.point import point_record, point_records
+from undula.sweeps.store import load_sweep, open_sweep
 from undula.sweeps.work_queue import SweepWork
 
 RANDOM = QUICK + '[study]\npolicy = "random"\ntries = 2\n' + AXES
@@ -39,15 +39,15 @@ NEIGHBOUR = QUICK + '[study]\npolicy = "neighbour"\n' + AXES
 
 
 @pytest.fixture
-def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make blocks of a few points, so that a small study has several."""
-    monkeypatch.setattr("undula.sweeps.blocks.MOST", 4)
+def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make chunks of a few points, so that a small study has several."""
+    monkeypatch.setattr("undula.sweeps.chunk_grid.MOST_POINTS_OF_CHUNK", 4)
 
 
 def test_xarray_opens_a_store_without_a_warning(tmp_path: Path) -> None:
-    study = study_of(tmp_path, RANDOM)
-    open_study(tmp_path / "new.zarr", study)
-    done(study, tmp_path / "done.zarr")
+    sweep = sweep_of(tmp_path, RANDOM)
+    open_sweep(tmp_path / "new.zarr", sweep)
+    done(sweep, tmp_path / "done.zarr")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         new, full = (xr.open_zarr(tmp_path / f"{name}.zarr").load() for name in ("new", "done"))
@@ -66,13 +66,13 @@ def test_xarray_opens_a_store_without_a_warning(tmp_path: Path) -> None:
 
 
 def test_a_stored_point_is_what_a_run_of_its_input_tells(tmp_path: Path) -> None:
-    study = study_of(tmp_path, RANDOM)
-    stored = done(study, tmp_path / "s.zarr")
+    sweep = sweep_of(tmp_path, RANDOM)
+    stored = done(sweep, tmp_path / "s.zarr")
     for number in (0, 7, 19):
-        wanted = parse_input(study.tables(number))
+        wanted = parse_input(sweep.tables(number))
         model = build_model(wanted)
         run = un.integrate(model, build_start(wanted, model), until=0.05, samples=60)
-        here, told = stored.isel(dict(zip(stored.dims, study.place(number), strict=False))), {}
+        here, told = stored.isel(dict(zip(stored.dims, sweep.place(number), strict=False))), {}
         told = run.summary()
         assert str(here["verdict"].values) == told["verdict"]
         assert str(here["ending"].values) == Ending.DONE.value
@@ -86,7 +86,7 @@ def test_a_stored_point_is_what_a_run_of_its_input_tells(tmp_path: Path) -> None
 
 def test_the_last_period_is_kept_where_it_is_asked_for(tmp_path: Path) -> None:
     text = QUICK + '[study]\nkeep = "period"\n' + AXES
-    stored = done(study_of(tmp_path, text), tmp_path / "s.zarr")
+    stored = done(sweep_of(tmp_path, text), tmp_path / "s.zarr")
     assert stored["shapes"].dims[-3:] == ("shape", "node", "axis")
     assert stored["shapes"].shape == (2, 5, 1, 24, 5, 3)
     # The mean position over several periods ends where that of the last shape is.
@@ -101,7 +101,7 @@ def test_the_last_period_is_kept_where_it_is_asked_for(tmp_path: Path) -> None:
 
 def test_whole_runs_are_files_that_every_command_reads(tmp_path: Path) -> None:
     text = QUICK + '[study]\nkeep = "run"\n' + AXES.replace("count = 5", "count = 2")
-    stored = done(study_of(tmp_path, text), tmp_path / "s.zarr")
+    stored = done(sweep_of(tmp_path, text), tmp_path / "s.zarr")
     run = un.load_result(tmp_path / "s.zarr" / "runs" / "1-0-0.nc")
     assert json.loads(run.attrs["input"])["load"] == {
         "profile": "power",
@@ -118,12 +118,12 @@ def test_whole_runs_are_files_that_every_command_reads(tmp_path: Path) -> None:
 def test_a_piece_that_takes_too_long_comes_back_in_part_and_loses_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    study = study_of(tmp_path, QUICK + AXES)
-    at_once = done(study, tmp_path / "at-once.zarr")
+    sweep = sweep_of(tmp_path, QUICK + AXES)
+    at_once = done(sweep, tmp_path / "at-once.zarr")
     # Every point takes longer than a piece should.
-    monkeypatch.setattr("undula.sweeps.point.PIECE_SECONDS", 0.0)
-    assert len(points(study.dump(), range(5))[1]) == 1
-    assert differing(done(study, tmp_path / "in-part.zarr"), at_once) == []
+    monkeypatch.setattr("undula.sweeps.point.TASK_SECONDS", 0.0)
+    assert len(point_records(sweep.dump(), range(5))[1]) == 1
+    assert differing(done(sweep, tmp_path / "in-part.zarr"), at_once) == []
 
 
 SOLVED = """
@@ -137,12 +137,12 @@ label = "solved"
 
 
 def test_solved_states_of_a_line_are_those_of_its_points(tmp_path: Path) -> None:
-    study = study_of(tmp_path, SOLVED + AXES)
-    assert study.whole_lines
-    line = done(study, tmp_path / "line.zarr")
+    sweep = sweep_of(tmp_path, SOLVED + AXES)
+    assert sweep.whole_rows
+    line = done(sweep, tmp_path / "line.zarr")
     assert set(line["verdict"].values.ravel()) >= {"straight", "spinning"}
     for number in (1, 3, 9):
-        alone, place = point(study.job(number)), study.place(number)
+        alone, place = point_record(sweep.request(number)), sweep.place(number)
         assert line["verdict"].values[place] == alone["verdict"]
         # Both are solved for to some 1e-8.
         assert line["frequency"].values[place] == pytest.approx(alone["frequency"], rel=1e-6)
@@ -155,50 +155,50 @@ def test_a_line_of_solved_states_in_which_a_point_fails_keeps_the_others(
         raise ArithmeticError("no branch")
 
     monkeypatch.setattr("undula.sweeps.point.stability_along_force", fails)
-    found = done(study_of(tmp_path, SOLVED + AXES), tmp_path / "s.zarr")
+    found = done(sweep_of(tmp_path, SOLVED + AXES), tmp_path / "s.zarr")
     assert (found["status"] == 1).all()
 
 
-@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.usefixtures("small_chunks")
 @pytest.mark.parametrize("text", [RANDOM, NEIGHBOUR])
 def test_a_study_that_is_gone_on_with_again_and_again_is_the_same(
     text: str, tmp_path: Path
 ) -> None:
-    study = study_of(tmp_path, text)
+    sweep = sweep_of(tmp_path, text)
     calls = 0
     while True:
-        work = SweepWork(open_study(tmp_path / "pieces.zarr", study))
-        if not work_off(work, study, 1):
+        work = SweepWork(open_sweep(tmp_path / "pieces.zarr", sweep))
+        if not work_off(work, sweep, 1):
             break
         calls += 1
     assert calls > 1
-    at_once = done(study, tmp_path / "at-once.zarr")
+    at_once = done(sweep, tmp_path / "at-once.zarr")
     assert differing(load_sweep(tmp_path / "pieces.zarr").load(), at_once) == []
 
 
-@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.usefixtures("small_chunks")
 def test_the_status_of_a_block_is_written_last_and_no_other_block_is_touched(
     tmp_path: Path,
 ) -> None:
-    study = study_of(tmp_path, RANDOM)
-    store = open_study(tmp_path / "s.zarr", study)
+    sweep = sweep_of(tmp_path, RANDOM)
+    store = open_sweep(tmp_path / "s.zarr", sweep)
     work = SweepWork(store)
-    work_off(work, study, 1)
-    names = written_in_order(store, lambda: work_off(work, study))
+    work_off(work, sweep, 1)
+    names = written_in_order(store, lambda: work_off(work, sweep))
     assert names[-1] == "status"
-    assert len(store.blocks) > 2
+    assert len(store.grid) > 2
     chunk = {path.name for path in (store.path / "status").iterdir() if path.name[0] != "."}
     statuses = store.statuses()
-    assert len(chunk) == len(store.blocks)
+    assert len(chunk) == len(store.grid)
     assert (statuses == 1).all()
 
 
-@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.usefixtures("small_chunks")
 @pytest.mark.parametrize("moment", [1, 5, 20, 24])
 def test_a_block_that_was_cut_short_while_it_was_written_is_done_again(
     moment: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    study = study_of(tmp_path, QUICK + AXES)
+    sweep = sweep_of(tmp_path, QUICK + AXES)
     put, written = LocalStore.set, 0
 
     async def cut_short(self: Any, key: str, value: Any) -> None:
@@ -208,25 +208,25 @@ def test_a_block_that_was_cut_short_while_it_was_written_is_done_again(
             raise RuntimeError("cut short")
         await put(self, key, value)
 
-    store = open_study(tmp_path / "s.zarr", study)
+    store = open_sweep(tmp_path / "s.zarr", sweep)
     with monkeypatch.context() as patched:
         patched.setattr(LocalStore, "set", cut_short)
         with pytest.raises(RuntimeError):
-            work_off(SweepWork(store), study)
+            work_off(SweepWork(store), sweep)
     unfinished = load_sweep(tmp_path / "s.zarr")["status"].values
     assert (unfinished == 0).sum() >= 10 - 4 * (moment // 20)
-    whole = done(study, tmp_path / "whole.zarr")
-    assert differing(done(study, tmp_path / "s.zarr"), whole) == []
+    whole = done(sweep, tmp_path / "whole.zarr")
+    assert differing(done(sweep, tmp_path / "s.zarr"), whole) == []
 
 
 def test_a_full_disk_is_told_in_a_sentence_and_what_was_done_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.sweeps.blocks.MOST", 4)
-    study = study_of(tmp_path, QUICK + AXES)
-    store = open_study(tmp_path / "s.zarr", study)
+    monkeypatch.setattr("undula.sweeps.chunk_grid.MOST_POINTS_OF_CHUNK", 4)
+    sweep = sweep_of(tmp_path, QUICK + AXES)
+    store = open_sweep(tmp_path / "s.zarr", sweep)
     work = SweepWork(store)
-    work_off(work, study, 2)
+    work_off(work, sweep, 2)
     kept = load_sweep(store.path)["status"].values.sum()
 
     async def full(*_: Any) -> None:
@@ -234,7 +234,7 @@ def test_a_full_disk_is_told_in_a_sentence_and_what_was_done_is_kept(
 
     with monkeypatch.context() as patched:
         patched.setattr(LocalStore, "set", full)
-        told = complaint(lambda: work_off(work, study))
+        told = complaint(lambda: work_off(work, sweep))
     assert told == (
         f"the disk that holds {tmp_path} is full; free some space or choose another folder"
     )
@@ -242,16 +242,16 @@ def test_a_full_disk_is_told_in_a_sentence_and_what_was_done_is_kept(
 
 
 def test_failing_points_are_recorded_and_done_again_on_request_only(tmp_path: Path) -> None:
-    study = study_of(tmp_path, QUICK + AXES)
-    done(study_of(tmp_path, QUICK + '[study]\nkeep = "run"\n' + AXES), tmp_path / "runs.zarr")
+    sweep = sweep_of(tmp_path, QUICK + AXES)
+    done(sweep_of(tmp_path, QUICK + '[study]\nkeep = "run"\n' + AXES), tmp_path / "runs.zarr")
     start = tmp_path / "runs.zarr" / "runs" / "0-4-0.nc"
     text = QUICK + f'[start]\nshape = "state"\nfile = "{start}"\n' + AXES
-    study = study_of(tmp_path, text)
+    sweep = sweep_of(tmp_path, text)
     hidden = start.rename(start.with_suffix(".away"))
-    failed = done(study, tmp_path / "s.zarr")
+    failed = done(sweep, tmp_path / "s.zarr")
     assert (failed["status"].values == 2).all()
     assert f"there is no result file {start}" in str(failed["reason"].values[0, 0, 0])
-    answer = study_answer(failed)
+    answer = sweep_answer(failed)
     assert answer["points"] == {"all": 10, "done": 0, "failed": 10, "to_go": 0}
     assert answer["failures"][1] == {
         "load.exponent": 0.5,
@@ -260,10 +260,10 @@ def test_failing_points_are_recorded_and_done_again_on_request_only(tmp_path: Pa
         "reason": f"there is no result file {start}; check the name",
     }
     hidden.rename(start)
-    assert (done(study, tmp_path / "s.zarr")["status"].values == 2).all()
-    again = done(study, tmp_path / "s.zarr", retry_failed=True)
+    assert (done(sweep, tmp_path / "s.zarr")["status"].values == 2).all()
+    again = done(sweep, tmp_path / "s.zarr", retry_failed=True)
     assert (again["status"].values == 1).all()
-    assert differing(again, done(study, tmp_path / "other.zarr")) == []
+    assert differing(again, done(sweep, tmp_path / "other.zarr")) == []
 
 
 def test_a_fault_in_a_point_is_a_failure_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -272,7 +272,7 @@ def test_a_fault_in_a_point_is_a_failure_with_its_reason(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(Simulation, "begin", fault)
     job = {"tables": {"model": {"segments": 4}}, "label": "runs", "keep": "verdict"}
-    record = point(job)
+    record = point_record(job)
     assert (record["status"], record["reason"]) == (2, "ZeroDivisionError: nothing left")
 
 
@@ -281,21 +281,21 @@ def test_neighbours_begin_with_what_the_one_before_has_come_to(tmp_path: Path) -
     # there: no verdict says so. A bent one leaves it.
     text = NEIGHBOUR.replace("from = 20", "from = 60").replace("[study]", "[study]\nkick = 0.0")
     straight = text + '\n[start]\nshape = "straight"\n'
-    stood = done(study_of(tmp_path, straight), tmp_path / "straight.zarr")
+    stood = done(sweep_of(tmp_path, straight), tmp_path / "straight.zarr")
     assert verdicts(stood) == {"undecided"}
     assert all("has not moved" in reason for reason in stood["reason"].values.ravel())
     # A kick of the next point is of its own seed, and makes it move.
     kicked = straight.replace("kick = 0.0", "kick = 0.1")
-    moved = done(study_of(tmp_path, kicked), tmp_path / "kicked.zarr")
+    moved = done(sweep_of(tmp_path, kicked), tmp_path / "kicked.zarr")
     assert verdicts(moved) != {"straight"}
 
 
 def test_neighbours_go_up_or_down(tmp_path: Path) -> None:
     # Far too short to settle, a run is still marked by where it began.
     text = NEIGHBOUR.replace("until = 0.05", "until = 0.002") + '[start]\nshape = "helix"\n'
-    up = done(study_of(tmp_path, text), tmp_path / "up.zarr")
-    down = done(study_of(tmp_path, text, 'study.direction="down"'), tmp_path / "down.zarr")
-    alone = done(study_of(tmp_path, text.replace("neighbour", "same")), tmp_path / "alone.zarr")
+    up = done(sweep_of(tmp_path, text), tmp_path / "up.zarr")
+    down = done(sweep_of(tmp_path, text, 'study.direction="down"'), tmp_path / "down.zarr")
+    alone = done(sweep_of(tmp_path, text.replace("neighbour", "same")), tmp_path / "alone.zarr")
     energies = [stored["energy_max"].values[:, :, 0] for stored in (up, down, alone)]
     assert (np.abs(energies[0] - energies[2])[:, 1:] > 1e-6).all()
     assert (np.abs(energies[1] - energies[2])[:, :-1] > 1e-6).all()
@@ -305,39 +305,39 @@ def test_the_store_of_another_study_or_version_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "s.zarr"
-    open_study(path, study_of(tmp_path, RANDOM))
+    open_sweep(path, sweep_of(tmp_path, RANDOM))
     for change, told in {
         "time.until=0.06": "with time.until = 0.05 instead of 0.06",
         "study.seed=2": "with study.seed = 1 instead of 2",
         "study.tries=3": "with study.tries = 2 instead of 3",
     }.items():
-        other = study_of(tmp_path, RANDOM, change)
-        assert told in complaint(lambda other=other: open_study(path, other))
-    same = study_of(tmp_path, RANDOM)
+        other = sweep_of(tmp_path, RANDOM, change)
+        assert told in complaint(lambda other=other: open_sweep(path, other))
+    same = sweep_of(tmp_path, RANDOM)
     with monkeypatch.context() as patched:
         patched.setattr("undula.sweeps.store.software", lambda: "9.9")
-        told = complaint(lambda: open_study(path, same))
+        told = complaint(lambda: open_sweep(path, same))
     assert f"made by undula {un_version()} and cannot be gone on with by undula 9.9" in told
-    with open_study(path, same).alone():
-        told = complaint(lambda: open_study(path, same).alone().__enter__())
+    with open_sweep(path, same).alone():
+        told = complaint(lambda: open_sweep(path, same).alone().__enter__())
     assert "another undula sweep is at work" in told
 
 
 def test_what_is_no_store_is_refused(tmp_path: Path) -> None:
-    study = study_of(tmp_path, RANDOM)
+    sweep = sweep_of(tmp_path, RANDOM)
     assert "there is no study" in complaint(lambda: load_sweep(tmp_path / "none"))
     for other in (tmp_path, tmp_path / "study.toml"):
-        assert "is no stored study" in complaint(lambda other=other: open_study(other, study))
+        assert "is no stored study" in complaint(lambda other=other: open_sweep(other, sweep))
     xr.Dataset({"a": 1}).to_zarr(tmp_path / "other.zarr", zarr_format=2)
     assert "has the format None" in complaint(lambda: load_sweep(tmp_path / "other.zarr"))
 
 
 def test_thousands_of_points_make_few_files(tmp_path: Path) -> None:
     axes = AXES.replace("[0.5, 2]", str(list(range(40)))).replace("count = 5", "count = 100")
-    store = open_study(tmp_path / "s.zarr", study_of(tmp_path, QUICK + axes))
-    assert store.study.count == 4000
-    # One file a variable and block, of up to MOST points each.
-    assert len(store.blocks) <= 4000 / MOST * 1.5
+    store = open_sweep(tmp_path / "s.zarr", sweep_of(tmp_path, QUICK + axes))
+    assert store.sweep.count == 4000
+    # One file a variable and chunk, of up to MOST_POINTS_OF_CHUNK points each.
+    assert len(store.grid) <= 4000 / MOST_POINTS_OF_CHUNK * 1.5
 
 
 def un_version() -> str:

@@ -29,11 +29,11 @@ from commands import (
     started,
     text,
 )
-from small_studies import AXES, QUICK, differing, done
+from small_sweeps import AXES, QUICK, differing, done
 from undula.sweeps import own_workers
 from undula.sweeps import workers as pool_module
-from undula.sweeps.store import load_sweep, open_study
-from undula.sweeps.sweep import read_study
+from undula.sweeps.store import load_sweep, open_sweep
+from undula.sweeps.sweep import read_sweep
 from undula.sweeps.work_queue import SweepWork
 from undula.sweeps.workers import DiedError, pool
 
@@ -111,7 +111,7 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Data
 def test_two_workers_reach_what_this_process_reaches(
     swept: tuple[Path, dict[str, Any]], tmp_path: Path
 ) -> None:
-    here = done(read_study(swept[0]), tmp_path / "here.zarr")
+    here = done(read_sweep(swept[0]), tmp_path / "here.zarr")
     assert differing(here, load_sweep(swept[0].parent / "s.zarr").load()) == []
 
 
@@ -284,15 +284,15 @@ def test_the_same_holds_with_a_scheduler_and_workers_of_their_own(
 
 
 def test_a_point_that_kills_its_workers_is_found_and_recorded(tmp_path: Path) -> None:
-    study = read_study(written(tmp_path, QUICK + AXES))
-    work = SweepWork(open_study(tmp_path / "s.zarr", study))
+    sweep = read_sweep(written(tmp_path, QUICK + AXES))
+    work = SweepWork(open_sweep(tmp_path / "s.zarr", sweep))
     deadly, deaths = 3, 0
-    while (piece := work.take()) is not None:
-        if deadly in piece.numbers:
+    while (task := work.take()) is not None:
+        if deadly in task.numbers:
             deaths += 1
-            work.died(piece)
+            work.died(task)
         else:
-            work.take_back(piece, [{"status": 1, "seconds": 0.2}] * len(piece.numbers))
+            work.take_back(task, [{"status": 1, "seconds": 0.2}] * len(task.numbers))
     work.save()
     stored = load_sweep(tmp_path / "s.zarr")
     assert stored["status"].values.ravel().tolist() == [1, 1, 1, 2, 1, 1, 1, 1, 1, 1]

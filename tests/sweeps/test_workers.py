@@ -19,16 +19,16 @@ import pytest
 import xarray as xr
 from distributed import Security, get_worker, rpc
 
-from small_studies import AXES, QUICK, differing, done, study_of
+from small_sweeps import AXES, QUICK, differing, done, sweep_of
 from undula.app.cli import main
 from undula.errors import InputError
 from undula.storage.run_file import load_checkpoint, load_result
 from undula.sweeps import own_workers
 from undula.sweeps import workers as pool_module
-from undula.sweeps.own_workers import TAKES, workers_that_fit
-from undula.sweeps.point import line, points
-from undula.sweeps.store import load_sweep, open_study
-from undula.sweeps.sweep import Study
+from undula.sweeps.own_workers import MEMORY_OF_WORKER, workers_that_fit
+from undula.sweeps.point import point_records, row_records
+from undula.sweeps.store import load_sweep, open_sweep
+from undula.sweeps.sweep import Sweep
 from undula.sweeps.work_queue import SweepWork
 from undula.sweeps.workers import LostError, Pool, pool
 
@@ -63,14 +63,17 @@ def asked(workers: Pool, work: Callable[..., Any], *what: Any) -> Any:
     return back[0][1]
 
 
-def swept(workers: Pool, study: Study, path: Path) -> xr.Dataset:
+def swept(workers: Pool, sweep: Sweep, path: Path) -> xr.Dataset:
     """Return a study done by workers, as a sweep does it."""
-    work, each = SweepWork(open_study(path, study)), line if study.whole_lines else points
+    work, each = (
+        SweepWork(open_sweep(path, sweep)),
+        row_records if sweep.whole_rows else point_records,
+    )
     while work.left:
-        while workers.has_room and (piece := work.take()) is not None:
-            workers.give(piece, each, study.dump(), piece.numbers)
-        for piece, (_, records) in workers.come_back(0.2):
-            work.take_back(piece, records)
+        while workers.has_room and (task := work.take()) is not None:
+            workers.give(task, each, sweep.dump(), task.numbers)
+        for task, (_, records) in workers.come_back(0.2):
+            work.take_back(task, records)
     work.save()
     return load_sweep(path).load()
 
@@ -102,18 +105,18 @@ def test_workers_come_to_what_this_process_comes_to(name: str, one: Pool, tmp_pa
     if name == "label solved":  # of profiles there are no solved states
         text = text.replace('profile = "power"', "")
         text = text[: text.index("[[study.axes]]")] + FORCES
-    study = study_of(tmp_path, text)
-    here, there = done(study, tmp_path / "here.zarr"), swept(one, study, tmp_path / "there.zarr")
+    sweep = sweep_of(tmp_path, text)
+    here, there = done(sweep, tmp_path / "here.zarr"), swept(one, sweep, tmp_path / "there.zarr")
     assert set(there["status"].values.ravel()) == {1}
     assert differing(here, there) == []
 
 
 def test_runs_that_workers_keep_are_results_that_can_be_resumed(one: Pool, tmp_path: Path) -> None:
-    study = study_of(tmp_path, QUICK + '[study]\nkeep = "run"\n' + LOG)
-    swept(one, study, tmp_path / "s.zarr")
-    done(study, tmp_path / "here.zarr")
+    sweep = sweep_of(tmp_path, QUICK + '[study]\nkeep = "run"\n' + LOG)
+    swept(one, sweep, tmp_path / "s.zarr")
+    done(sweep, tmp_path / "here.zarr")
     kept = sorted((tmp_path / "s.zarr" / "runs").iterdir())
-    assert len(kept) == study.count
+    assert len(kept) == sweep.count
     for path in kept:
         assert load_result(path).sizes["time"] == load_checkpoint(path)["states"].shape[0]
         assert path.read_bytes() == (tmp_path / "here.zarr" / "runs" / path.name).read_bytes()
@@ -212,7 +215,7 @@ def test_killed_workers_are_made_good(one: Pool) -> None:
 def test_a_worker_that_was_given_up_is_made_good(
     one: Pool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(pool_module, "MEND_EVERY", 0.5)
+    monkeypatch.setattr(pool_module, "REPLACE_EVERY", 0.5)
     before = asked(one, os.getpid)
     cluster = one._client.cluster
     # What watches over the worker ends, as it does if the worker cannot start.
@@ -231,8 +234,8 @@ def test_a_study_without_workers_is_left_after_a_while(
     monkeypatch.setenv("PYTHONPATH", "")
     monkeypatch.delenv("PYTHONPATH")
     monkeypatch.setattr(pool_module, "OWN_PATIENCE", 3.0)
-    monkeypatch.setattr(pool_module, "MEND_EVERY", 1.0)
-    study_of(tmp_path, QUICK + AXES)
+    monkeypatch.setattr(pool_module, "REPLACE_EVERY", 1.0)
+    sweep_of(tmp_path, QUICK + AXES)
     words = ["sweep", str(tmp_path / "study.toml"), "--workers", "1", "--json"]
     assert main([*words, "--out", str(tmp_path / "s.zarr")]) == 3
     said = capsys.readouterr()
@@ -260,7 +263,7 @@ def test_workers_that_do_not_fit_are_refused_before_anything_begins(
 ) -> None:
     monkeypatch.setattr(own_workers, "CPU_COUNT", 2)
     monkeypatch.setattr(own_workers, "MEMORY_LIMIT", 2e9)
-    study_of(tmp_path, QUICK + AXES)
+    sweep_of(tmp_path, QUICK + AXES)
     words = ["sweep", str(tmp_path / "study.toml"), "--workers", str(count)]
     assert main([*words, "--out", str(tmp_path / "s.zarr")]) == 2
     assert told in capsys.readouterr().err
@@ -275,7 +278,7 @@ def test_without_a_number_as_many_workers_start_as_fit(monkeypatch: pytest.Monke
     monkeypatch.setattr(own_workers, "MEMORY_LIMIT", 2e9)
     assert workers_that_fit(None) == 6
     assert workers_that_fit(1) == 1
-    monkeypatch.setattr(own_workers, "MEMORY_LIMIT", 0.5 * TAKES)
+    monkeypatch.setattr(own_workers, "MEMORY_LIMIT", 0.5 * MEMORY_OF_WORKER)
     assert workers_that_fit(None) == 1
 
 
@@ -306,8 +309,8 @@ def scheduler_alone(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]
 def test_a_scheduler_without_workers_and_one_that_is_gone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(pool_module, "TOLD_AFTER", 0.5)
-    study = study_of(tmp_path, QUICK + AXES)
+    monkeypatch.setattr(pool_module, "NOTIFY_AFTER", 0.5)
+    sweep = sweep_of(tmp_path, QUICK + AXES)
     words = ["sweep", str(tmp_path / "study.toml"), "--out", str(tmp_path / "s.zarr"), "--json"]
     with scheduler_alone(tmp_path) as (address, process):
 
@@ -326,11 +329,11 @@ def test_a_scheduler_without_workers_and_one_that_is_gone(
             assert ended()[0] == "no workers"
         with pool(None, address, print) as workers:
             # It stops for good amid a study, wherever the driver is just then.
-            workers.give(None, points, study.dump(), (0,))
+            workers.give(None, point_records, sweep.dump(), (0,))
             process.kill()
             process.wait()
             with pytest.raises(LostError, match="left by its scheduler"):
-                asked(workers, points, study.dump(), (1,))
+                asked(workers, point_records, sweep.dump(), (1,))
             for act in (lambda: workers.has_room, lambda: list(workers.come_back(0.1))):
                 workers._look_due = 0.0
                 with pytest.raises(LostError):
@@ -351,7 +354,7 @@ def started(*words: str | Path) -> subprocess.Popen[str]:
 
 
 def test_of_sweeps_that_begin_together_one_goes_on_and_the_other_says_so(tmp_path: Path) -> None:
-    study_of(tmp_path, QUICK.replace("0.05", "2.0") + AXES)
+    sweep_of(tmp_path, QUICK.replace("0.05", "2.0") + AXES)
     store = tmp_path / "s.zarr"
     both = [started(tmp_path / "study.toml", "--workers", "1", "--out", store) for _ in range(2)]
     told = [command.communicate(timeout=PATIENCE)[1] for command in both]
@@ -381,7 +384,7 @@ slow = pytest.mark.slow
 def test_a_sweep_that_is_ended_keeps_all_also_while_workers_start(
     ending: signal.Signals, after: float, tmp_path: Path
 ) -> None:
-    study_of(tmp_path, ENDLESS)
+    sweep_of(tmp_path, ENDLESS)
     store = tmp_path / "s.zarr"
     command = started(tmp_path / "study.toml", "--workers", "2", "--out", store, "--json")
     assert command.stderr is not None

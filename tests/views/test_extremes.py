@@ -19,13 +19,13 @@ from undula.inputs.model_tables import ModelTable
 from undula.models.description import model_words
 from undula.views import portrait
 from undula.views.common import style
-from undula.views.common.verdict_styles import _LOOKS, look_of
+from undula.views.common.verdict_styles import LOOKS, look_of
 from undula.views.ramp.figure import ramp_diagram
 from undula.views.run.traces import limits
 
 NODES = 9
 ARC = np.linspace(0.0, 1.0, NODES)
-VERDICTS = [verdict for verdict in _LOOKS if verdict != "straight"]
+VERDICTS = [verdict for verdict in LOOKS if verdict != "straight"]
 
 
 def run(times: np.ndarray, *, rate: float, energy: np.ndarray, **summary) -> xr.Dataset:
@@ -135,8 +135,8 @@ def test_every_verdict_has_its_own_look_and_the_same_colour_in_every_figure() ->
         and isinstance(call.args[0], ast.Constant)
     }
     assert "modulated spinning" in given
-    assert given <= _LOOKS.keys()
-    assert len({look.marker + look.colour for look in _LOOKS.values()}) == len(_LOOKS)
+    assert given <= LOOKS.keys()
+    assert len({look.marker + look.colour for look in LOOKS.values()}) == len(LOOKS)
     figure = ramp_diagram([series(VERDICTS)])
     for verdict in VERDICTS:
         lines = [line for axes in figure.axes for line in axes.lines]
@@ -221,7 +221,7 @@ def test_words_tell_every_key_of_the_model_that_departs_from_its_default(key: st
     assert plain.load_text != changed.load_text
     # A curve over the key leaves its value out, and Python says the same as the command line.
     if not isinstance(value, str):
-        assert str(value) not in changed.tell({f"model.{key}"})
+        assert str(value) not in changed.describe({f"model.{key}"})
     assert model_words(build_model(changed)) == changed.load_text
 
 

@@ -23,9 +23,9 @@ from refusal import complaint
 from sweeps import coded, made_up, path_of, shape_of
 from undula.analysis.maps.stability_boundaries import StabilityBoundaries
 from undula.analysis.maps.stability_intervals import Change, StabilityIntervals
-from undula.sweeps.boundary_cache import NAME, keep_borders
-from undula.sweeps.store import load_sweep, open_study
-from undula.sweeps.sweep import read_study
+from undula.sweeps.boundary_cache import NAME, write_boundaries
+from undula.sweeps.store import load_sweep, open_sweep
+from undula.sweeps.sweep import read_sweep
 from undula.views import gallery, mean_paths, phase_diagram, phase_page
 from undula.views.sweep.axes import scale_of
 from undula.views.sweep.page_traces import plain
@@ -426,18 +426,18 @@ values = [20.0, 40.0, 80.0, 160.0]
 
 
 @pytest.fixture
-def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def sweep(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return a stored study in which all runs spin but those below 30, which are straight."""
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(STUDY, encoding="utf-8")
-    wanted = read_study(Path("study.toml"))
-    store = open_study(Path("study"), wanted)
-    for block in range(len(store.blocks)):
-        numbers = list(store.blocks.numbers(block))
-        arrays = store.read(block)
+    wanted = read_sweep(Path("study.toml"))
+    store = open_sweep(Path("study"), wanted)
+    for chunk in range(len(store.grid)):
+        numbers = list(store.grid.numbers(chunk))
+        arrays = store.read(chunk)
         records = [_record(wanted.tables(number)) for number in numbers]
         store.put(arrays, range(len(numbers)), records)
-        store.write(block, arrays)
+        store.write(chunk, arrays)
     return Path("study")
 
 
@@ -464,8 +464,8 @@ def known_borders(up_to: float = 160.0) -> StabilityBoundaries:
     return StabilityBoundaries("load.exponent", (0.0, 1.0), up_to, (column, column))
 
 
-def test_a_folder_is_drawn_as_a_study(study: Path, ask: Ask) -> None:
-    found = answer(ask("plot", study, "--json"))
+def test_a_folder_is_drawn_as_a_study(sweep: Path, ask: Ask) -> None:
+    found = answer(ask("plot", sweep, "--json"))
     assert (found["points"], found["done"], found["failed"]) == (16, 16, 0)
     assert found["verdicts"] == {"spinning": 12, "straight": 4}
     assert found["figure"] == "study.png"
@@ -474,46 +474,46 @@ def test_a_folder_is_drawn_as_a_study(study: Path, ask: Ask) -> None:
     assert (shares["load.exponent"], shares["load.force"], shares["tries"]) == (0.0, 40.0, 2)
     # Both of two: Wilson's interval ends at 1 / (1 + z^2 / n).
     assert shares["verdicts"]["spinning"]["low"] == pytest.approx(1 / (1 + 1.959964**2 / 2))
-    assert not (study / NAME).exists()
+    assert not (sweep / NAME).exists()
 
 
 @pytest.mark.parametrize("view", ["gallery", "paths", "basins"])
-def test_each_view_has_a_file_of_its_own(view: str, study: Path, ask: Ask) -> None:
-    assert answer(ask("plot", study, "--view", view, "--json"))["figure"] == f"study-{view}.png"
+def test_each_view_has_a_file_of_its_own(view: str, sweep: Path, ask: Ask) -> None:
+    assert answer(ask("plot", sweep, "--view", view, "--json"))["figure"] == f"study-{view}.png"
     assert Path(f"study-{view}.png").exists()
 
 
-def test_a_page_is_written_where_its_name_says_so(study: Path, ask: Ask) -> None:
-    asked = ask("plot", study, "--out", "study.html")
+def test_a_page_is_written_where_its_name_says_so(sweep: Path, ask: Ask) -> None:
+    asked = ask("plot", sweep, "--out", "study.html")
     content = content_of(Path("study.html").read_text(encoding="utf-8"))
     assert len(content["points"]) == 8
     assert all("shapes" in point for point in content["points"])
     assert text(asked).startswith("study.html\n")
     # It is not replaced unasked.
-    assert ask("plot", study, "--out", "study.html").status == 2
+    assert ask("plot", sweep, "--out", "study.html").status == 2
 
 
-def test_kept_borders_are_used_and_contradicting_runs_told(study: Path, ask: Ask) -> None:
-    keep_borders(study, load_sweep(study), known_borders())
-    found = answer(ask("plot", study, "--borders", "--json"))
+def test_kept_borders_are_used_and_contradicting_runs_told(sweep: Path, ask: Ask) -> None:
+    write_boundaries(sweep, load_sweep(sweep), known_borders())
+    found = answer(ask("plot", sweep, "--borders", "--json"))
     assert [one["force"] for one in found["borders"]["spinning-lost"]] == [100.0, 100.0]
     assert found["borders"]["flapping-gained"][0]["force"] is None
     # Spinning at 160, for two exponents and two tries.
     assert len(found["disagreements"]) == 4
     assert {one["load.force"] for one in found["disagreements"]} == {160.0}
-    said = text(ask("plot", study, "--borders"))
+    said = text(ask("plot", sweep, "--borders"))
     assert "points that contradict the solved states: 4, 0 of them next to a border" in said
     assert "spinning is stable from force 30 to 100 only" in said
 
 
-def test_borders_are_solved_for_once(study: Path, ask: Ask) -> None:
+def test_borders_are_solved_for_once(sweep: Path, ask: Ask) -> None:
     # Below the onset no branch has to be followed, which is quick.
-    part = ["plot", study, "--borders", "--json", "--at", "load.force=20", "--overwrite"]
+    part = ["plot", sweep, "--borders", "--json", "--at", "load.force=20", "--overwrite"]
     first = answer(ask(*part))
-    assert (study / NAME).exists()
-    kept = (study / NAME).stat().st_mtime_ns
+    assert (sweep / NAME).exists()
+    kept = (sweep / NAME).stat().st_mtime_ns
     assert answer(ask(*part)) == first
-    assert (study / NAME).stat().st_mtime_ns == kept
+    assert (sweep / NAME).stat().st_mtime_ns == kept
     onsets = [one["force"] for one in first["borders"]["onset"]]
     assert onsets[0] > onsets[1] > 30.0
     assert first["disagreements"] == []
@@ -531,9 +531,9 @@ def test_borders_are_solved_for_once(study: Path, ask: Ask) -> None:
     ],
 )
 def test_a_mistake_is_told_in_one_sentence(
-    options: list[str], said: str, study: Path, ask: Ask
+    options: list[str], said: str, sweep: Path, ask: Ask
 ) -> None:
-    assert said in refused(ask("plot", study, *options))
+    assert said in refused(ask("plot", sweep, *options))
 
 
 def test_options_of_studies_are_refused_for_runs(tmp_path: Path, ask: Ask) -> None:

@@ -1,4 +1,4 @@
-"""The command `undula`. Nothing heavy is imported before a command needs it."""
+"""The command `undula`; heavy packages are imported by the commands that need them."""
 
 import os
 import sys
@@ -21,14 +21,14 @@ from undula.app.options import (
     WithLyapunov,
     seconds_of,
 )
-from undula.app.questions import find, follow, stability, threshold
-from undula.app.reproduction import reproduce
-from undula.app.studying import status, sweep
-from undula.app.viewing import movie, plot
+from undula.app.plot_commands import movie, plot
+from undula.app.reproduce_command import reproduce
+from undula.app.solving_commands import find, follow, stability, threshold
+from undula.app.sweep_commands import status, sweep
 from undula.interrupts import endings_heard
 from undula.terminal.output import INTERRUPTED, interrupted, refuse
 
-# Matrices here are small: a second thread of the linear algebra makes them slower, not faster.
+# The matrices are small: more threads of the linear algebra would slow it down.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 app = typer.Typer(
@@ -36,7 +36,7 @@ app = typer.Typer(
     cls=Commands,
     add_completion=False,
     pretty_exceptions_enable=False,
-    # As mark-up, words in square brackets would be commands to rich and not come out.
+    # As mark-up, rich would take words in square brackets for commands and omit them.
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -48,20 +48,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments
-        What stands behind `undula`; by default what the shell gave.
+        Words after `undula`; None for those of the shell.
 
     Returns
     -------
     int
         The exit status: 0 done, 2 bad input, 3 stopped early with results kept or an answer that
-        standard output did not take, 130 interrupted before there was a result.
+        standard output refused, 130 interrupted without a result.
     """
     from undula.terminal.output import STOPPED_EARLY, notice
     from undula.terminal.streams import guarded_streams
 
-    given = list(sys.argv[1:] if arguments is None else arguments)
+    words = list(sys.argv[1:] if arguments is None else arguments)
     with guarded_streams() as answers:
-        status = _carry_out(given or ["--help"])
+        status = _execute(words or ["--help"])
         answers.flush()
         if answers.trouble is not None:
             notice(
@@ -72,14 +72,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
-def _carry_out(given: Sequence[str]) -> int:
-    """Run a command; tell a mistake in one sentence, and return the exit status."""
-    from undula.terminal.warnings import warnings_told
+def _execute(words: Sequence[str]) -> int:
+    """Run a command, report a mistake of the user in one sentence, and return the exit status."""
+    from undula.terminal.warnings import stored_warnings_noticed
 
     try:
-        with warnings_told(), endings_heard():
-            status = int(app(given, prog_name="undula", standalone_mode=False) or 0)
-        # Which is what typer makes of KeyboardInterrupt.
+        with stored_warnings_noticed(), endings_heard():
+            status = int(app(words, prog_name="undula", standalone_mode=False) or 0)
+        # Typer turns KeyboardInterrupt into this status.
         return interrupted() if status == INTERRUPTED else status
     except KeyboardInterrupt:
         return interrupted()
@@ -89,7 +89,7 @@ def _carry_out(given: Sequence[str]) -> int:
         sentence = sentence_of(error)
         if sentence is None:
             raise
-        return refuse(sentence, as_json="--json" in given)
+        return refuse(sentence, as_json="--json" in words)
 
 
 def _version(wanted: bool) -> None:
@@ -162,15 +162,15 @@ def resume(
 ) -> int:
     """Go on where a run ended, in the same file; figure and movie are drawn anew."""
     from undula.app.commands.run_end import finish, views_of
-    from undula.app.commands.run_job import take_up
+    from undula.app.commands.run_job import resumed
     from undula.storage.outputs import claimed
     from undula.storage.run_file import load_result
 
     seconds = seconds_of(budget)
-    load_result(result)  # what is none is told before anything is made or locked
+    load_result(result)  # refuses other files before anything is made or locked
     views = views_of(result, with_movie=not no_movie)
     with claimed(result, *views, renewed=views, continued=[result], overwrite=overwrite) as claim:
-        job = take_up(result, until)
+        job = resumed(result, until)
         return finish(job, claim, views, budget=seconds, lyapunov=lyapunov, as_json=as_json)
 
 
@@ -203,7 +203,7 @@ def step(
     was stopped early goes on with the same command.
     """
     from undula.app.commands.run_job import reads_of
-    from undula.app.commands.step import Job, plan, step_along
+    from undula.app.commands.step import RampJob, plan, run_ramp
     from undula.inputs.ramp_input import read_step_input
 
     seconds = seconds_of(budget)
@@ -211,8 +211,8 @@ def step(
     series = plan(wanted, along, back=down, kick=kick, seed=seed)
     result = (out or Path("results") / (file.stem if file else "step")) / "steps.nc"
     reads = reads_of(file, wanted)
-    job = Job(wanted, series, result, reads, overwrite=overwrite, with_thresholds=thresholds)
-    return step_along(job, budget=seconds, as_json=as_json)
+    job = RampJob(wanted, series, result, reads, overwrite=overwrite, with_thresholds=thresholds)
+    return run_ramp(job, budget=seconds, as_json=as_json)
 
 
 @app.command()
@@ -232,14 +232,14 @@ def units(
     as_json: Json = False,
 ) -> int:
     """Convert dimensionless numbers of a filament to physical ones, and back."""
-    from undula.app.commands.units import convert, given, scales_of, units_answer, units_text
+    from undula.app.commands.units import convert, scales_of, units_answer, units_text, without_none
     from undula.terminal.output import DONE, reply
 
     scales = scales_of(length, stiffness, viscosity, slenderness)
     converted = convert(
         scales,
-        given(force=force, time=time, frequency=frequency, energy=energy),
-        given(force=force_pn, time=time_s, frequency=frequency_hz, energy=energy_pn_um),
+        without_none(force=force, time=time, frequency=frequency, energy=energy),
+        without_none(force=force_pn, time=time_s, frequency=frequency_hz, energy=energy_pn_um),
     )
     reply(units_answer(scales, converted), units_text(scales, converted), as_json=as_json)
     return DONE

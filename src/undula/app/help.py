@@ -1,4 +1,4 @@
-"""The list of commands in the help, with every word of what it tells."""
+"""List of commands in the help, with unabridged descriptions."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from typer.core import TyperGroup
 
 
 class Commands(TyperGroup):
-    """Commands that are listed with their whole first sentence; Click would cut it short."""
+    """Group of commands listed with their whole first sentence, which Click would shorten."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a command by its name."""

@@ -1,33 +1,33 @@
-"""Errors that a user can put right, told apart from faults of the program."""
+"""Distinction between mistakes that a user can correct and faults of the program."""
 
 import errno
 import os
 
 from undula.errors import InputError
 
-#: Errors of files that lie in the place where they are, not in the program.
+#: Errors of files that depend on their folder, not on the program.
 _CLOSED = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG, errno.ELOOP)
 
 
 def sentence_of(error: Exception) -> str | None:
-    """Return what to tell the user of an error, None of one that is a fault of the program.
+    """Return the sentence for the user on an error; None for a fault of the program.
 
     Parameters
     ----------
     error
-        What ended a command: bad input, a wrong option, a file in a place that is closed, or
-        equations without one solution.
+        The error that ended a command: bad input, a wrong option, a file without permission, or
+        equations without a unique solution.
     """
-    # A wrong option, too, is bad input; its class has no public name in all versions of typer.
-    told = getattr(error, "format_message", None)
-    if told is not None:
-        return str(told())
+    # The class of wrong options has no public name in some versions of typer.
+    format_message = getattr(error, "format_message", None)
+    if format_message is not None:
+        return str(format_message())
     if isinstance(error, OSError) and error.filename is not None and error.errno in _CLOSED:
         return (
             f"cannot use {os.fsdecode(error.filename)} ({error.strerror}); open it to yourself, or"
             " give another place"
         )
-    if type(error).__name__ == "LinAlgError":  # numpy's, which is not imported for this
+    if type(error).__name__ == "LinAlgError":  # of numpy, which is not imported only for this check
         return (
             f"a system of equations has no unique solution for this model ({error}); change its"
             " numbers a little, or take more links"

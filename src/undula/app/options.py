@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share."""
+"""Arguments and options shared by several commands."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -11,18 +11,18 @@ from undula.inputs.file_names import any_name, file_name
 
 
 def a_file(text: str) -> Path:
-    """Parse a word of the command line that names a file; every such word goes through here.
+    """Parse a word of the command line that names a file; the parser of all such words.
 
     Raises
     ------
     typer.BadParameter
-        No file can be called so.
+        No file can have this name.
     """
     return _parsed(file_name, text)
 
 
 def a_path(text: str) -> Path:
-    """Parse a word of the command line that names a file or a folder, as `a_file` does."""
+    """Parse a word of the command line that names a file or folder; errors as for `a_file`."""
     return _parsed(any_name, text)
 
 
@@ -71,16 +71,16 @@ Budget = Annotated[
 
 
 def seconds_of(budget: float | None) -> float:
-    """Return the seconds that a command may take.
+    """Return the wall time of a command [s], infinite for None.
 
     Raises
     ------
     InputError
-        They are not above 0.
+        The budget is not above 0.
     """
     if budget is None:
         return float("inf")
-    # Written so that NaN, too, is refused.
+    # This form of the condition also refuses NaN.
     if not budget > 0.0:
         raise InputError(f"--budget {budget} is out of range; give a number of seconds above 0")
     return budget

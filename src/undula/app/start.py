@@ -1,10 +1,10 @@
-"""The program `undula`, begun so that Ctrl-C ends it quietly while it is still being imported."""
+"""Start of the program `undula`, which Ctrl-C ends without a traceback during its imports."""
 
 
 def main() -> int:
     """Run the command line of the shell; return its exit status."""
     try:
-        from undula.app.cli import main as carry_out
+        from undula.app.cli import main as run_command
     except KeyboardInterrupt:
-        return 130  # as `undula.terminal.output.INTERRUPTED`, which is not there yet
-    return carry_out()
+        return 130  # as `undula.terminal.output.INTERRUPTED`, which is not imported yet
+    return run_command()

@@ -1,4 +1,4 @@
-"""From a checked input to what runs: the model, its start and its schedule."""
+"""Model, start and schedule of a run, built from a checked input."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -57,7 +57,7 @@ def build_model(wanted: ModelInput) -> Model:
     Parameters
     ----------
     wanted
-        A checked input; its tables ``[model]`` and ``[load]`` are read.
+        A checked input; its tables ``[model]`` and ``[load]`` are used.
     """
     table, load = wanted.model, wanted.load
     if table.kind == "chain":
@@ -85,14 +85,14 @@ def build_model(wanted: ModelInput) -> Model:
 
 
 def build_start(wanted: RunInput, model: Model) -> State:
-    """Return the state in which the run of an input begins.
+    """Return the initial state of the run that an input describes.
 
     Parameters
     ----------
     wanted
-        A checked input; its table ``[start]`` is read.
+        A checked input; its table ``[start]`` is used.
     model
-        The model that runs.
+        The model of the run.
 
     Returns
     -------
@@ -109,18 +109,18 @@ def build_start(wanted: RunInput, model: Model) -> State:
 
 
 def build_schedule(wanted: RunInput) -> Schedule:
-    """Return how long the run of an input goes on, what it samples, and how exact it is.
+    """Return the end, the samples and the tolerances of the run that an input describes.
 
     Parameters
     ----------
     wanted
-        A checked input; its table ``[time]`` is read.
+        A checked input; its table ``[time]`` is used.
     """
     return Schedule(**wanted.time.model_dump())
 
 
 def _stored_state(model: Model, path: Path, amplitude: float) -> State:
-    # Files are slow to learn to read, and most starts need none.
+    # The import is slow, and most starts read no file.
     from undula.storage.run_file import load_result
 
     nodes = load_result(path)["nodes"]

@@ -1,4 +1,4 @@
-"""Names of files and folders as users give them: refused where no file can have them."""
+"""Checks of file and folder names that users give."""
 
 import errno
 import os
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from undula.errors import InputError
 
-#: Bytes of a file's name without its folder, on all usual file systems; letters of one when told.
+#: Longest part of a path on usual file systems [bytes]; longest name shown [characters].
 _LONGEST_PART, _LONGEST_SHOWN = 255, 60
 _CURES = {
     errno.EACCES: "give a name in a folder that is open to you",
@@ -16,24 +16,24 @@ _CURES = {
 
 
 def any_name(text: str) -> Path:
-    """Return a name as a path, of a file or a folder that is there or is to be made.
+    """Return the name of a file or folder as a path, whether it exists or not.
 
     Raises
     ------
     InputError
-        Nothing can have this name, or it lies where this process cannot look.
+        No file can have this name, or this process has no access to its folder.
     """
     if not text:
         raise InputError("an empty text is no name; give the name of a file or folder")
     if "\0" in text:
         raise InputError(f"{text!r} holds the character NUL, which no name can; leave it out")
     try:
-        # The system sees this only where the folders on the way are there.
+        # The system checks this only if all folders of the path exist.
         if any(len(os.fsencode(part)) > _LONGEST_PART for part in Path(text).parts):
             raise OSError(errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG))
         os.lstat(text)
     except (FileNotFoundError, NotADirectoryError):
-        pass  # told by whoever looks for it, or is to make it
+        pass  # reported where the file is read or written
     except OSError as error:
         shown = text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
         cure = _CURES.get(error.errno or 0, "give another name")
@@ -47,7 +47,7 @@ def file_name(text: str) -> Path:
     Raises
     ------
     InputError
-        Nothing can have this name, or only a folder can.
+        No file can have this name, or it names a folder.
     """
     path = any_name(text)
     if path.name in ("", ".."):

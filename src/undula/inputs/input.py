@@ -1,6 +1,7 @@
-"""The input of a command: a frozen, checked record with a default for every key.
+"""Inputs of commands: frozen, checked records with a default for every key.
 
-One file describes a model and may hold tables for several commands; each reads its own.
+One file describes a model and may hold tables for several commands; each command reads its own
+tables.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -14,7 +15,7 @@ from undula.inputs.messages import explain
 from undula.inputs.model_tables import LoadTable, ModelTable
 from undula.inputs.overrides import apply_overrides, read_toml
 from undula.inputs.run_tables import StabilityTable, StartTable, TimeTable
-from undula.inputs.sweep_table import StudyTable
+from undula.inputs.sweep_table import SweepTable
 from undula.inputs.table import Table, conflict
 from undula.models.description import words
 from undula.models.loads.beads import BeadLoad
@@ -22,13 +23,13 @@ from undula.models.units import FILAMENT_UNITS, chain_units
 
 
 class ModelInput(Table):
-    """What every command reads.
+    """The input of a model, which every command reads.
 
     Attributes
     ----------
     model, load
-        What moves, and what pushes it. Every key has a value; one that has no meaning under the
-        choices made holds its default and is left out of `dump`.
+        The tables ``[model]`` and ``[load]``. Every key has a value; a key without meaning for the
+        chosen values of other keys holds its default and is left out of `dump`.
     """
 
     model: ModelTable = Field(default=ModelTable(), description="a table")
@@ -37,13 +38,13 @@ class ModelInput(Table):
     @model_validator(mode="before")
     @classmethod
     def _chains_move_like_filaments(cls, given: Any) -> Any:
-        """Give a chain the force and the times that correspond to a filament's defaults."""
+        """Set the defaults of a chain: force and times that correspond to those of a filament."""
         table = given.get("model") if isinstance(given, Mapping) else None
         if not (isinstance(table, Mapping) and table.get("kind") == "chain"):
             return given
         links = table.get("links", ModelTable.model_fields["links"].default)
         if not isinstance(links, int) or links < 1:
-            return given  # which is refused where its range is known
+            return given  # refused by the check of this key
         units = chain_units(links)
         corresponding = {
             "load": {"force": LoadTable().force / units.forces[FILAMENT_UNITS.force]},
@@ -73,15 +74,15 @@ class ModelInput(Table):
     @property
     def load_text(self) -> str:
         """Model and load in a few words, such as ``tip force 75``."""
-        return self.tell()
+        return self.describe()
 
-    def tell(self, swept: Collection[str] = ()) -> str:
-        """Return model and load in a few words, without the keys that a curve sweeps over."""
+    def describe(self, varied: Collection[str] = ()) -> str:
+        """Return model and load in a few words, without the keys in `varied`."""
         body, load = (
             {name: getattr(table, name) for name in table.dump()}
             for table in (self.model, self.load)
         )
-        return words(body, self.load.profile, load, swept)
+        return words(body, self.load.profile, load, varied)
 
     def dump(self) -> dict[str, Any]:
         """Return the complete resolved input as plain JSON types.
@@ -89,14 +90,14 @@ class ModelInput(Table):
         Returns
         -------
         dict
-            Table name to keys and values, without the keys that have no meaning under the
-            choices made. `parse_input` turns it back into an equal record.
+            Keys and values by table, without the keys that have no meaning for the chosen values
+            of others. `parse_input` turns it back into an equal record.
         """
         return {name: getattr(self, name).dump() for name in type(self).model_fields}
 
 
 class RunInput(ModelInput):
-    """The complete, checked input of one run: the filament, its start, and how long."""
+    """The complete, checked input of one run: model, load, start and time."""
 
     start: StartTable = Field(default=StartTable(), description="a table")
     time: TimeTable = Field(default=TimeTable(), description="a table")
@@ -117,31 +118,31 @@ class RunInput(ModelInput):
 
 
 class StabilityInput(ModelInput):
-    """The complete, checked input of a question about the straight state."""
+    """The complete, checked input of a stability analysis of the straight state."""
 
     stability: StabilityTable = Field(default=StabilityTable(), description="a table")
 
 
-class StudyInput(RunInput):
-    """The complete, checked input of a study: that of its runs, and what is varied in it."""
+class SweepInput(RunInput):
+    """The complete, checked input of a sweep: that of its runs, and the table ``[study]``."""
 
-    study: StudyTable = Field(default=StudyTable(), description="a table")
+    study: SweepTable = Field(default=SweepTable(), description="a table")
 
 
-class _WholeFile(StudyInput, StabilityInput):
-    """All that an input file may hold."""
+class _WholeFile(SweepInput, StabilityInput):
+    """All tables of an input file."""
 
 
 Input = TypeVar("Input", bound=ModelInput)
 
 
 def parse_input(tables: Mapping[str, Any]) -> RunInput:
-    """Check an input that has already been read into plain Python types.
+    """Check an input in plain Python types.
 
     Parameters
     ----------
     tables
-        Table name to keys and values, as TOML or JSON gives them.
+        Keys and values by table, as read from TOML or JSON.
 
     Returns
     -------
@@ -151,7 +152,8 @@ def parse_input(tables: Mapping[str, Any]) -> RunInput:
     Raises
     ------
     InputError
-        The first mistake, what would be right, and how many more there are.
+        A key or value is wrong. The sentence states the first mistake, its cure and the number of
+        further mistakes.
     """
     return _checked(RunInput, tables)
 
@@ -162,10 +164,10 @@ def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunIn
     Parameters
     ----------
     path
-        A TOML file in UTF-8; without one, everything starts from the defaults.
+        A TOML file in UTF-8; None for the defaults.
     overrides
-        Changes such as ``"load.force=80"``, applied in order. The value is read as TOML; what
-        is not TOML is text, so ``"load.profile=linear"`` needs no quotes.
+        Changes such as ``"load.force=80"``, applied in order. A value that is not valid TOML is
+        taken as text, so that ``"load.profile=linear"`` needs no quotes.
 
     Returns
     -------
@@ -175,48 +177,97 @@ def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunIn
     Raises
     ------
     InputError
-        The file cannot be read or is not TOML, an override is malformed or meant for another
-        command, or a key or value is wrong. The sentence names the culprit and what would be
-        right.
+        The file cannot be read or is not TOML, an override is malformed or belongs to another
+        command, or a key or value is wrong. The sentence names the culprit and the cure.
     """
     return read_tables(RunInput, path, overrides)[1]
 
 
 def read_model_input(path: Path | None = None, overrides: Sequence[str] = ()) -> ModelInput:
-    """Read what every command reads, as `read_input` does for a run."""
+    """Read the input of a model; arguments and errors as for `read_input`.
+
+    Parameters
+    ----------
+    path
+        A TOML file in UTF-8; None for the defaults.
+    overrides
+        Changes such as ``"load.force=80"``, applied in order.
+    """
     return read_tables(ModelInput, path, overrides)[1]
 
 
 def read_stability_input(path: Path | None = None, overrides: Sequence[str] = ()) -> StabilityInput:
-    """Read the input of a question about the straight state, as `read_input` does for a run."""
+    """Read the input of a stability analysis; arguments and errors as for `read_input`.
+
+    Parameters
+    ----------
+    path
+        A TOML file in UTF-8; None for the defaults.
+    overrides
+        Changes such as ``"load.force=80"``, applied in order.
+    """
     return read_tables(StabilityInput, path, overrides)[1]
 
 
 def read_tables(
     record: type[Input], path: Path | None, overrides: Sequence[str]
 ) -> tuple[dict[str, Any], Input]:
-    """Read an input as `read_input` does for a run; return its tables as given, and checked."""
+    """Read an input of a given type; return its tables as given, and the checked record.
+
+    Arguments and errors are as for `changed_tables`, with a file in place of tables.
+
+    Parameters
+    ----------
+    record
+        Type of the input.
+    path
+        A TOML file in UTF-8; None for the defaults.
+    overrides
+        Changes such as ``"load.force=80"``, applied in order.
+    """
     return changed_tables(record, {} if path is None else read_toml(path), overrides)
 
 
 def changed_tables(
     record: type[Input], tables: Mapping[str, Any], overrides: Sequence[str]
 ) -> tuple[dict[str, Any], Input]:
-    """Change single keys in tables; return those that a record reads as given, and checked."""
+    """Change single keys in tables and check the result.
+
+    Parameters
+    ----------
+    record
+        Type of the input.
+    tables
+        Keys and values by table.
+    overrides
+        Changes such as ``"load.force=80"``, applied in order.
+
+    Returns
+    -------
+    dict
+        The tables of this type of input, as given.
+    Input
+        The checked record, every default filled in.
+
+    Raises
+    ------
+    InputError
+        An override is malformed or belongs to another command, or a key or value is wrong.
+    """
     given = apply_overrides(tables, overrides)
     _checked(_WholeFile, given)
     for override in overrides:
         if override.partition(".")[0].strip() not in record.model_fields:
             raise InputError(
                 f"--set {override} changes a table that this command does not read; it reads"
-                f" {', '.join(f'[{known}]' for known in record.model_fields)}"
+                f" {', '.join(f'[{name}]' for name in record.model_fields)}"
             )
-    mine = {name: given[name] for name in record.model_fields if name in given}
-    return mine, _checked(record, mine)
+    own = {name: given[name] for name in record.model_fields if name in given}
+    return own, _checked(record, own)
 
 
 def _times(given: Mapping[str, Any]) -> dict[str, float]:
-    """Return the default times of a filament that the choices in an input leave a meaning."""
+    """Return the default times of a filament that have a meaning for a given table ``[time]``."""
     fields, chosen = TimeTable.model_fields, given.get("time")
     if isinstance(chosen, Mapping) and chosen.get("until") in ("settled", "solved"):
         return {"limit": fields["limit"].default}

@@ -1,4 +1,4 @@
-"""Validation errors as one sentence for the user: the culprit, what is wrong, and the cure."""
+"""Messages on wrong inputs: one sentence with the culprit, the mistake and the cure."""
 
 import difflib
 import math
@@ -24,14 +24,14 @@ _KINDS: tuple[tuple[type | tuple[type, ...], str], ...] = (
 
 
 def explain(error: ValidationError, record: type[BaseModel]) -> str:
-    """Tell the first mistake in one sentence, and how many more there are.
+    """Return a sentence with the first mistake and the number of further mistakes.
 
     Parameters
     ----------
     error
-        What pydantic found wrong.
+        The error that pydantic raised.
     record
-        The whole input; its fields are the tables, whose fields are the keys.
+        Type of the input; its fields are the tables, whose fields are the keys.
 
     Returns
     -------
@@ -42,30 +42,32 @@ def explain(error: ValidationError, record: type[BaseModel]) -> str:
     known = _known_keys(record)
     mistakes: dict[str, ErrorDetails] = {}
     for details in error.errors():
-        # A key of two types (a number or a word) fails once for each: it is one mistake.
+        # A key of two types, a number or a word, fails once for each type: one mistake.
         mistakes.setdefault(_place(details, known)[-1], details)
     more = len(mistakes) - 1
     sentence = _sentence(next(iter(mistakes.values())), known)
     return sentence if more == 0 else f"{sentence} ({more} more mistake{'s' * (more > 1)})"
 
 
-def _known_keys(record: type[BaseModel], at: str = "") -> dict[str, dict[str, str]]:
-    """Return table name -> key -> what the key takes; a list of tables is called study.axes."""
+def _known_keys(record: type[BaseModel], prefix: str = "") -> dict[str, dict[str, str]]:
+    """Return description by key by table; a list of tables is named as in study.axes."""
     known: dict[str, dict[str, str]] = {}
     for name, field in record.model_fields.items():
         listed = get_args(field.annotation)[:1]
         for table in (field.annotation, *listed):
             if isinstance(table, type) and issubclass(table, BaseModel):
                 keys = table.model_fields.items()
-                known[f"{at}{name}"] = {of.alias or key: str(of.description) for key, of in keys}
-                known |= _known_keys(table, f"{at}{name}.")
+                known[f"{prefix}{name}"] = {
+                    of.alias or key: str(of.description) for key, of in keys
+                }
+                known |= _known_keys(table, f"{prefix}{name}.")
     return known
 
 
 def _place(details: ErrorDetails, known: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the table, the key, and both as they are told; only the table if it is itself wrong.
+    """Return table, key and the name of both; table and its name if the table itself is wrong.
 
-    One table of a list is told by its number, as in ``study.axes[0].count``.
+    The name of a table in a list contains its number, as in ``study.axes[0].count``.
     """
     place = details["loc"]
     outer = ".".join(map(str, place[:2]))
@@ -86,7 +88,7 @@ def _sentence(details: ErrorDetails, known: Mapping[str, Mapping[str, str]]) -> 
         return f"{name} is not a known key; {_cure_of_key(table, key, known)}"
     if kind == IDLE_KEY:
         return _idle_key(table, key, value, details["ctx"])
-    # In a list of numbers it is one entry that is wrong.
+    # In a list of numbers a single entry is wrong.
     inner = details["loc"][4 if "." in table else 2 :]
     entry = "".join(f"[{part}]" for part in inner if isinstance(part, int))
     verdict = _verdict(kind, value)
@@ -138,7 +140,7 @@ def _verdict(kind: str, value: Any) -> str:
     if kind == "literal_error" and isinstance(value, str):
         return "is not known"
     if kind.endswith("_type") and isinstance(value, int) and not isinstance(value, bool):
-        # A whole number is taken wherever a number is, unless it exceeds what a float holds.
+        # Whole numbers are valid numbers unless they exceed the range of a float.
         return "is a whole number" if abs(value) < 1e308 else "is too large"
     return f"is {next((name for types, name in _KINDS if isinstance(value, types)), 'wrong')}"
 
@@ -157,12 +159,20 @@ def _show(value: Any) -> str:
 
 
 def _name(*parts: str) -> str:
-    # Quoted keys may hold anything; a line break would tear the sentence apart.
+    # Quoted keys may contain line breaks, which would split the sentence.
     return ".".join(part if part.isprintable() else repr(part) for part in parts)
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that was probably meant, None if there is none like it."""
+    """Return the most similar known word, None if no word is similar.
+
+    Parameters
+    ----------
+    word
+        A word that is not known.
+    known
+        The known words.
+    """
     return next(iter(difflib.get_close_matches(word.lower(), list(known), n=1)), None)
 
 

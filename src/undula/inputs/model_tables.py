@@ -1,4 +1,4 @@
-"""The tables of an input file that describe the model: what moves, and what pushes it.
+"""Tables of an input file that describe the model and its load.
 
 Numbers are dimensionless: lengths in L, forces in B/L^2 for a filament and in K/L for a chain.
 """
@@ -18,7 +18,7 @@ from undula.models.natural_curvature import CurvatureTable
 
 Inextensibility = Literal["exact", "weak"]
 Profile = Literal["tip", "point", "linear", "power", "table", "beads"]
-#: A list, as TOML and JSON have it, held so that it cannot be changed; its numbers stay strict.
+#: Numbers given as a list and stored as a tuple; single numbers are not converted.
 Numbers = Annotated[tuple[float, ...], Field(strict=False), PlainSerializer(list)]
 PositiveNumbers = Annotated[
     tuple[Annotated[float, Field(gt=0.0)], ...], Field(strict=False), PlainSerializer(list)
@@ -31,7 +31,7 @@ BeadNumbers = Annotated[
 
 
 def _curvature(given: Any) -> Any:
-    """Return the lists of a natural curvature as a table, anything else as it is."""
+    """Return a natural curvature given by lists as a `CurvatureTable`, other values unchanged."""
     if isinstance(given, list) and len(given) != 2:
         raise conflict(
             f"model.natural_curvature = {given} is no pair; give two numbers, [k1, k2], or a table"
@@ -47,9 +47,9 @@ def _curvature(given: Any) -> Any:
     try:
         return CurvatureTable(**given)
     except InputError as error:
-        # The table names its values as the keys are named.
-        told = str(error).removeprefix("CurvatureTable: ")
-        raise conflict(f"model.natural_curvature.{told}") from None
+        # The message of the table uses the names of the keys.
+        message = str(error).removeprefix("CurvatureTable: ")
+        raise conflict(f"model.natural_curvature.{message}") from None
 
 
 def _as_lists(table: CurvatureTable) -> dict[str, list[float]]:
@@ -64,43 +64,44 @@ GivenCurvature = Annotated[
 
 
 class ModelTable(Table):
-    """The table ``[model]``: what moves.
+    """The table ``[model]``: the filament or chain.
 
     Attributes
     ----------
     kind
         The family of models: ``"filament"`` or ``"chain"``.
     segments
-        Number of rigid links that a filament is made of, from 4 to 2000.
+        Number of rigid links of a filament, from 4 to 2000.
     links
         Number of links of a chain, from 1 to 1000.
     drag_ratio
         Normal over tangential drag coefficient, at least 1; by default 2 for a filament and 1 for a
         chain.
     inextensibility
-        ``"exact"`` by tensions, or ``"weak"`` by a large tensile stiffness; for a filament.
+        ``"exact"`` with tensions, or ``"weak"`` with a large tensile stiffness; for a filament.
     tensile_stiffness
-        EA L^2/B, above 0; read only for weak inextensibility. The default is 4 (L/a)^2 for a
-        rod of circular section with a/L = 1/100.
+        EA L^2/B, above 0; for weak inextensibility. The default is 4 (L/a)^2 for a rod of circular
+        section with a/L = 1/100.
     base_spring
-        Stiffness of the spring that clamps a chain, in K, above 0.
+        Stiffness of the spring that clamps a chain [K], above 0.
     bead_drag
-        Drag of every bead of a chain, or a list with that of each one from the base on, in zeta.
+        Drag of every bead of a chain, or a list with one value for each bead from the base on
+        [zeta].
     confined
-        Whether the motion is kept in one plane.
+        True for motion in one plane.
     natural_curvature
-        Curvature at rest about the two directors of a filament in 1/L: a pair, or the points of a
-        table; not with `confined` or weak inextensibility, nor are ratios of stiffness but 1.
+        Curvature at rest about the two directors of a filament [1/L]: a pair, or a table of points.
+        Like a bending ratio other than 1, it excludes `confined` and weak inextensibility.
     bending_ratio
         Stiffness of a filament against bending about its second director over that about the
         first, above 0.
     twist
-        What keeps a filament from twisting: ``"paper"``, ``"rigid"`` or ``"elastic"``.
+        Model of twist of a filament: ``"paper"``, ``"rigid"`` or ``"elastic"``.
     twist_stiffness
-        C/B, above 0; read only for elastic twist.
+        C/B, above 0; for elastic twist.
     spring
-        What the energy of a chain's joint takes for its angle: ``"angle"``, from 0 to pi, or
-        ``"unwrapped"``, followed beyond pi, for a confined chain.
+        Angle in the energy of a chain's joint: ``"angle"``, from 0 to pi, or ``"unwrapped"``,
+        continued beyond pi, for a confined chain.
     """
 
     kind: Literal["filament", "chain"] = Field(
@@ -169,7 +170,7 @@ class ModelTable(Table):
     def _directors_have_room(self) -> Self:
         directors = self.natural_curvature, self.bending_ratio
         if self.kind != "filament" or directors == ((0.0, 0.0), 1.0):
-            return self  # there are none, or they do not matter
+            return self  # without directors, or with a default that needs none
         try:
             Filament(
                 segments=self.segments,
@@ -180,7 +181,7 @@ class ModelTable(Table):
                 bending_ratio=self.bending_ratio,
             )
         except InputError as error:
-            # The filament names its values as the keys are named.
+            # The message of the filament uses the names of the keys.
             raise conflict(f"model.{error}") from None
         return self
 
@@ -195,28 +196,27 @@ class ModelTable(Table):
 
 
 class LoadTable(Table):
-    """The table ``[load]``: the follower force and where it acts.
+    """The table ``[load]``: the follower force and its distribution.
 
     Attributes
     ----------
     profile
-        How the force is spread along the filament.
+        Distribution of the force along the filament.
     force
-        Total force F, at least 0. By default 75 B/L^2 for a filament; for a chain what
-        corresponds to it, 75/N K/L.
+        Total force F, at least 0. By default 75 B/L^2 for a filament, and the corresponding
+        75/N K/L for a chain.
     position
-        Arclength s_a of a point load in L, above 0 and at most 1.
+        Arclength s_a of a point load [L], above 0 and at most 1.
     slope
         Slope alpha of a linear load, from -1 to 1: density F [1 + alpha (2 s - 1)].
     exponent
         Exponent p of a power load, at least 0: density F (p + 1) s^p.
     s, density
-        The points of a table load: arclengths in L, increasing from 0 to 1, and the density at
-        each of them in any unit, linear in between and scaled to the total; for ``table``, which
-        cannot do without.
+        Points of a table load: arclengths [L], increasing from 0 to 1, and the density there in
+        any unit, linear in between and scaled to the total; required for ``table``.
     beads
-        The beads of a chain that share a force equally, counted from 1 at the base, or ``"all"``;
-        for ``beads``.
+        Numbers of the beads of a chain that share the force equally, from 1 at the base, or
+        ``"all"``; for ``beads``.
     """
 
     profile: Profile = Field(
@@ -256,6 +256,6 @@ class LoadTable(Table):
         try:
             TableLoad(self.force, self.s, self.density)
         except InputError as error:
-            # The load names its values as the keys are named.
+            # The message of the load uses the names of the keys.
             raise conflict(f"load.{str(error).removeprefix('TableLoad: ')}") from None
         return self

@@ -1,4 +1,4 @@
-"""From text to plain tables: the TOML file, and single keys changed on top of it."""
+"""Reading of TOML files into plain tables, and changes of single keys."""
 
 import re
 import tomllib
@@ -8,7 +8,7 @@ from typing import Any
 
 from undula.errors import InputError
 
-#: Bytes of an input file at most: lists of a million numbers have room.
+#: Largest input file [bytes]: lists of a million numbers fit.
 _LARGEST = 32_000_000
 _PLACE = re.compile(r" \(at (.*)\)$")
 
@@ -24,8 +24,8 @@ def read_toml(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The file is missing, unreadable, too large, not UTF-8 or not TOML; the last with line and
-        column.
+        The file is missing, unreadable, too large, not UTF-8 or not TOML; the sentence on wrong
+        TOML contains line and column.
     """
     try:
         with path.open("rb") as file:
@@ -55,9 +55,9 @@ def apply_overrides(tables: Mapping[str, Any], overrides: Sequence[str]) -> dict
     Parameters
     ----------
     tables
-        Table name to keys and values; left as it is.
+        Keys and values by table; not changed.
     overrides
-        ``TABLE.KEY=VALUE``, applied in order. The value is read as TOML, else taken as text.
+        ``TABLE.KEY=VALUE``, applied in order. A value that is not valid TOML is taken as text.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def apply_overrides(tables: Mapping[str, Any], overrides: Sequence[str]) -> dict
     for override in overrides:
         name, key, value = _split(override)
         table = changed.setdefault(name, {})
-        # A table that is no table stays as it is: the check of the whole input names it.
+        # A value in place of a table stays: the check of the whole input reports it.
         if isinstance(table, dict):
             table[key] = value
     return changed
@@ -81,13 +81,13 @@ def _parse(path: Path, text: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         message = str(error)
-        found = _PLACE.search(message)
-        place = f", {found.group(1)}" if found else ""
+        match = _PLACE.search(message)
+        place = f", {match.group(1)}" if match else ""
         raise InputError(
             f"{path}{place}: {_PLACE.sub('', message)}; correct the TOML there"
         ) from None
     except (ValueError, RecursionError):
-        # Numbers of thousands of digits and brackets nested by the thousand.
+        # Numbers of thousands of digits, and thousands of nested brackets.
         raise InputError(
             f"{path} holds a value too large to read; give plain TOML numbers and text"
         ) from None

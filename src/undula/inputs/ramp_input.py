@@ -1,4 +1,4 @@
-"""The input of a series of steps: that of a run, which settles unless the input says otherwise."""
+"""Input of a quasi-static ramp: that of a run which settles, unless the input sets an end."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,27 +10,27 @@ _SETTLE = 'time.until="settled"'
 
 
 def read_step_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunInput:
-    """Read the input of a series of steps, as `undula.inputs.input.read_input` does for a run.
+    """Read the input of a quasi-static ramp.
 
     Parameters
     ----------
     path
-        A TOML file in UTF-8; without one, everything starts from the defaults.
+        A TOML file in UTF-8; None for the defaults.
     overrides
         Changes such as ``"load.force=80"``, applied in order.
 
     Returns
     -------
     RunInput
-        The checked input. Where neither file nor overrides name ``time.until``, each step runs
-        until it has settled.
+        The checked input. Without ``time.until`` in file and overrides, each step runs until it has
+        settled.
 
     Raises
     ------
     InputError
-        As for a run.
+        As for `undula.inputs.input.read_input`.
     """
-    given = apply_overrides({} if path is None else read_toml(path), overrides)
-    table = given.get("time", {})
+    tables = apply_overrides({} if path is None else read_toml(path), overrides)
+    table = tables.get("time", {})
     chosen = not isinstance(table, Mapping) or "until" in table
     return read_input(path, overrides if chosen else (_SETTLE, *overrides))

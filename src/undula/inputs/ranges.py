@@ -1,4 +1,4 @@
-"""Values from the command line: a range such as ``0:60:121``, or a list such as ``20,30,40``."""
+"""Values on the command line: a range such as ``0:60:121``, or a list such as ``20,30,40``."""
 
 import math
 from decimal import Decimal
@@ -8,45 +8,45 @@ import numpy as np
 from undula.analysis.ramps.ramp import MOST_STEPS
 from undula.errors import InputError
 
-# More points than this are a slip of the finger, not a curve.
-_MOST = 1_000_000
+#: Most points of a range; more are taken for a typing error.
+_MOST_NUMBERS = 1_000_000
 
 
 def parse_values(option: str, text: str) -> tuple[float, ...]:
-    """Return the numbers that a range or a list stands for.
+    """Return the numbers of a range or a list.
 
     Parameters
     ----------
     option
-        The name under which the text was given, for complaints.
+        Name of the option, for messages.
     text
         ``START:STOP:COUNT``, both ends included, or numbers with commas between them.
 
     Returns
     -------
     tuple of float
-        One at least.
+        At least one number.
 
     Raises
     ------
     InputError
-        It is neither, or a number in it is not finite.
+        The text is neither, or a number in it is not finite.
     """
     parts = text.split(":")
     if len(parts) == 1:
-        if text.count(",") >= _MOST:
-            raise InputError(f"{option} lists more than {_MOST} numbers; give fewer")
+        if text.count(",") >= _MOST_NUMBERS:
+            raise InputError(f"{option} lists more than {_MOST_NUMBERS} numbers; give fewer")
         return tuple(_number(option, text, part) for part in text.split(","))
     if len(parts) != 3:
         raise _wrong(option, text)
     start, stop = (_number(option, text, part) for part in parts[:2])
     count = parts[2].strip()
-    # Python reads no whole number of thousands of digits.
-    digits = count.isascii() and count.isdigit() and len(count) <= len(str(_MOST))
-    if not (digits and 1 <= int(count) <= _MOST):
+    # Python refuses to convert whole numbers of thousands of digits.
+    digits = count.isascii() and count.isdigit() and len(count) <= len(str(_MOST_NUMBERS))
+    if not (digits and 1 <= int(count) <= _MOST_NUMBERS):
         raise InputError(
             f"{option} {text}: {count or 'nothing'} is no number of points; give a whole number"
-            f" from 1 to {_MOST}"
+            f" from 1 to {_MOST_NUMBERS}"
         )
     if not math.isfinite(stop - start):
         raise InputError(f"{option} {text} spans more than a number can hold; give a shorter range")
@@ -56,15 +56,22 @@ def parse_values(option: str, text: str) -> tuple[float, ...]:
 def parse_way(option: str, text: str) -> tuple[str, float | None, float]:
     """Return the parameter, the start and the end of ``load.force=38:300``.
 
-    The start is None for ``load.force=onset:300``: where the straight state loses stability.
+    The start is None for ``load.force=onset:300``, the onset of instability of the straight state.
+
+    Parameters
+    ----------
+    option
+        Name of the option, for messages.
+    text
+        ``KEY=START:END``.
 
     Raises
     ------
     InputError
-        There is no parameter, or what follows is not two different numbers.
+        The parameter is missing, or the ends are not two different numbers.
     """
-    name, equals, way = (part.strip() for part in text.partition("="))
-    ends = way.split(":")
+    name, equals, interval = (part.strip() for part in text.partition("="))
+    ends = interval.split(":")
     if not (name and equals and len(ends) == 2):
         raise InputError(f"{option} {text} has no 'KEY=START:END'; write it like load.force=38:300")
     end = _number(option, text, ends[1])
@@ -82,50 +89,52 @@ def parse_steps(option: str, text: str) -> tuple[str, tuple[float, ...]]:
     Parameters
     ----------
     option
-        The name under which the text was given, for complaints.
+        Name of the option, for messages.
     text
-        ``KEY=START:STOP:STEP``. The values go from START by STEP as far as STOP, which is one of
-        them if it is hit; down to a lower STOP the sign of STEP may be left out.
+        ``KEY=START:STOP:STEP``. The values run from START in steps of STEP up to STOP, which is
+        included if a step ends there; for a lower STOP the sign of STEP may be left out.
 
     Returns
     -------
-    tuple of str and tuple of float
-        The name, and two values at least; the decimals that one would write, without round-off.
+    str
+        Name of the parameter.
+    tuple of float
+        At least two values, exact in decimals, without round-off.
 
     Raises
     ------
     InputError
-        There is no parameter, what follows is not three finite numbers, or STEP is 0, leads away
-        from STOP, or makes less than one step or far too many.
+        The parameter is missing, the rest is not three finite numbers, or STEP is 0, leads away
+        from STOP, or makes less than one step or too many.
     """
-    name, equals, way = (part.strip() for part in text.partition("="))
-    parts = way.split(":")
+    name, equals, interval = (part.strip() for part in text.partition("="))
+    parts = interval.split(":")
     wrong = InputError(
         f"{option} {text} has no 'KEY=START:STOP:STEP'; write it like load.force=0:60:0.5"
     )
     if not (name and equals and len(parts) == 3):
         raise wrong
     numbers = (_number(option, text, part, wrong) for part in parts)
-    # The shortest decimals of a number are those that were written.
+    # The shortest decimal representation of a number is the one that was written.
     start, stop, step = (Decimal(repr(number)) for number in numbers)
     count = _steps_between(f"{option} {text}", start, stop, step)
     step = abs(step) if stop > start else -abs(step)
     return name, tuple(float(start + number * step) for number in range(count + 1))
 
 
-def _steps_between(told: str, start: Decimal, stop: Decimal, step: Decimal) -> int:
+def _steps_between(given: str, start: Decimal, stop: Decimal, step: Decimal) -> int:
     if start == stop:
-        raise InputError(f"{told} goes nowhere; give two different numbers to go between")
+        raise InputError(f"{given} goes nowhere; give two different numbers to go between")
     if step == 0:
-        raise InputError(f"{told} has a step of 0, which leads nowhere; give a step above 0")
+        raise InputError(f"{given} has a step of 0, which leads nowhere; give a step above 0")
     if step < 0 and stop > start:
-        raise InputError(f"{told} has a step that leads away from {stop}; leave out its sign")
+        raise InputError(f"{given} has a step that leads away from {stop}; leave out its sign")
     ratio = abs((stop - start) / step)
     if ratio < 1:
-        raise InputError(f"{told} has a step longer than the whole way; give a shorter one")
+        raise InputError(f"{given} has a step longer than the whole way; give a shorter one")
     if ratio >= MOST_STEPS + 1:
         raise InputError(
-            f"{told} takes more than {MOST_STEPS} steps; give a longer step or a shorter way"
+            f"{given} takes more than {MOST_STEPS} steps; give a longer step or a shorter way"
         )
     return int(ratio)
 
@@ -133,10 +142,17 @@ def _steps_between(told: str, start: Decimal, stop: Decimal, step: Decimal) -> i
 def parse_axis(option: str, text: str) -> tuple[str, tuple[float, ...]]:
     """Return the parameter and the values of ``load.slope=-1:1:41``.
 
+    Parameters
+    ----------
+    option
+        Name of the option, for messages.
+    text
+        ``KEY=RANGE`` or ``KEY=LIST``, with the values as for `parse_values`.
+
     Raises
     ------
     InputError
-        There is no parameter, or what follows is neither a range nor a list.
+        The parameter is missing, or the rest is neither a range nor a list.
     """
     name, equals, values = (part.strip() for part in text.partition("="))
     if not (name and equals and values):

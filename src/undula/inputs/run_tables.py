@@ -1,4 +1,4 @@
-"""The tables of an input file that say what is done with the model: start, time, stability.
+"""Tables of an input file for the work on a model: start, time and stability.
 
 Numbers are dimensionless: times in zeta_perp L^4/B for a filament, in zeta L^2/K for a chain.
 """
@@ -23,20 +23,20 @@ class StartTable(Table):
     Attributes
     ----------
     shape
-        The family of starts.
+        Kind of the start.
     amplitude
-        Largest inclination to the axis, radians, above 0 and at most pi; for ``state`` a factor
-        on the stored inclinations instead, 1 unless given; not for ``straight``.
+        Largest inclination to the axis [rad], above 0 and at most pi; for ``state`` a factor on the
+        stored inclinations, by default 1; not for ``straight``.
     seed
         Seed of the random kick, from 0 to 2^63 - 1; for ``kicked``.
     angle
-        Azimuth of the plane of the start, radians; for ``planar`` and ``mode``, and 0 for a
-        confined model.
+        Azimuth of the plane of the start [rad]; for ``planar`` and ``mode``, and 0 for a confined
+        model.
     handedness
         Sense of the helix, ``"right"`` or ``"left"``; for ``helix``.
     file
-        Result file whose last state is the start, relative to the working folder; for ``state``,
-        which cannot do without.
+        Result file whose last state is the start, relative to the working folder; required for
+        ``state``.
     """
 
     shape: Shape = Field(
@@ -77,24 +77,24 @@ class StartTable(Table):
 
 
 class TimeTable(Table):
-    """The table ``[time]``: how long, and how exactly.
+    """The table ``[time]``: duration, samples and tolerances.
 
     Attributes
     ----------
     until
-        Time at which the run ends, above 0; or ``"settled"``: until the motion repeats itself; or
-        ``"solved"``: until then at the latest, but only until a stable straight or spinning state
-        is found next to it, whose name and numbers it then has. By default 1 for a filament; for a
-        chain what corresponds to it, N^2.
+        Time at which the run ends, above 0; or ``"settled"``, when the motion recurs; or
+        ``"solved"``, the same or as soon as the motion approaches a stable straight or spinning
+        state that is solved for, whose name and numbers the result then has. By default 1 for a
+        filament, and the corresponding N^2 for a chain.
     limit
-        Time at which a run to ``"settled"`` or ``"solved"`` gives up, above 0. By default 10 for a
+        Longest time of a run to ``"settled"`` or ``"solved"``, above 0. By default 10 for a
         filament, and 10 N^2 for a chain.
     samples
         Number of stored times, from 2 to 10^9.
     rtol
         Error tolerance of a step relative to the inclination of the filament, from 1e-12 to 1e-2.
     atol
-        Absolute error tolerance of a step, radians, above 0 and at most 1e-2.
+        Absolute error tolerance of a step [rad], above 0 and at most 1e-2.
     """
 
     until: Annotated[float, Field(gt=0.0)] | Literal["settled", "solved"] = Field(
@@ -123,16 +123,17 @@ class TimeTable(Table):
 
 
 class StabilityTable(Table):
-    """The table ``[stability]``: how the straight state is judged.
+    """The table ``[stability]``: method of the stability analysis of the straight state.
 
     Attributes
     ----------
     method
-        ``"spectral"`` on polynomials, ``"modes"`` on the paper's assumed modes, ``"discrete"`` for
-        the links as they are; by default spectral wherever links stand for a continuous filament.
+        ``"spectral"`` with polynomials, ``"modes"`` with the assumed modes of the paper,
+        ``"discrete"`` for the links themselves; by default spectral wherever links represent a
+        continuous filament.
     paper_time
-        Whether rates and frequencies are given as the paper's printed equation has them, smaller
-        by the drag ratio.
+        If true, rates and frequencies are in the time unit of the paper's printed equation, and
+        thus smaller by the drag ratio.
     """
 
     method: LinearMethod | None = Field(

@@ -1,7 +1,7 @@
-"""The table ``[study]`` of an input file: what is varied, how points begin, what is kept of each.
+"""The table ``[study]`` of an input file: axes, starts and stored results of a sweep.
 
-All other tables of the file are those of a run; they hold for every point but for the keys that
-its axes change.
+All other tables of the file are those of a run; they hold for every point, except for the keys that
+the axes vary.
 """
 
 import math
@@ -21,7 +21,7 @@ AxisValues = Annotated[
 _Amplitude = Annotated[float, Field(gt=0.0, le=math.pi)]
 Amplitudes = Annotated[tuple[_Amplitude, _Amplitude], Field(strict=False), PlainSerializer(list)]
 
-#: More points than this are a slip of the finger, not a study.
+#: Most points of a sweep; more are taken for a typing error.
 MOST_POINTS = 1_000_000
 
 
@@ -31,15 +31,15 @@ class AxisTable(Table):
     Attributes
     ----------
     key
-        Table and name, such as ``"load.force"``; of a key that takes numbers.
+        Table and name of a key that takes numbers, such as ``"load.force"``.
     values
-        The values in their order, or instead of them a range:
+        The values in their order; alternatively a range is given:
     from, to
-        Its ends, both included.
+        Ends of the range, both included.
     count
-        Number of its values, from 2 to 1000000.
+        Number of values in the range, from 2 to 1000000.
     spacing
-        ``"linear"``, or ``"log"`` between ends above 0.
+        Spacing of the range: ``"linear"``, or ``"log"`` between ends above 0.
     """
 
     key: str = Field(default="", description="a key of the input such as 'load.force'")
@@ -94,7 +94,7 @@ class AxisTable(Table):
 
     @property
     def resolved(self) -> tuple[int | float, ...]:
-        """All its values."""
+        """All values of the axis."""
         if self.values is not None:
             return self.values
         ends = self.start or 0.0, self.to or 0.0
@@ -102,37 +102,37 @@ class AxisTable(Table):
         return tuple(spaced(*ends, self.count or 0).tolist())
 
 
-class StudyTable(Table):
-    """The table ``[study]``: thousands of runs as one study.
+class SweepTable(Table):
+    """The table ``[study]``: settings of a sweep.
 
     Attributes
     ----------
     label
-        What is found at a point: how a run ends (``"runs"``), or which states there are, solved
-        for (``"solved"``).
+        Result of a point: the verdict on a run (``"runs"``), or the states that are solved for
+        (``"solved"``).
     keep
-        What is kept of a run: verdict and figures, its last ``"period"`` besides, or the whole
-        ``"run"`` as a file of its own.
+        Stored part of a run: ``"verdict"`` and figures, also its last ``"period"``, or the whole
+        ``"run"`` as a file.
     undecided
-        What becomes of a point whose run does not tell: it stays so (``"keep"``), or solved states
-        are asked (``"solve"``), and if just one of them is stable, that is the verdict.
+        Treatment of an undecided run: it stays undecided (``"keep"``), or states are solved for
+        (``"solve"``), and the only stable one of them is the verdict.
     policy
-        How a run begins: with the start of the input (``"same"``), with ``"random"`` shapes, or
-        with what the ``"neighbour"`` before it along the last axis has come to.
+        Start of a run: that of the input (``"same"``), a ``"random"`` shape, or the last shape of
+        the ``"neighbour"`` before it along the last axis.
     tries
-        Number of random starts at a point, from 1 to 1000000.
+        Number of replicates of a point, with different random starts, from 1 to 1000000.
     seed
         Seed of random starts and kicks, from 0 to 2^63 - 1.
     amplitudes
-        Least and largest inclination of random starts, radians, above 0 and at most pi; drawn
-        log-uniformly in between.
+        Least and largest inclination of random starts [rad], above 0 and at most pi; the
+        inclinations are log-uniform in between.
     direction
-        The way along the last axis, for neighbours.
+        Direction along the last axis, for neighbours.
     kick
-        Largest angle by which a neighbour's shape is turned at random before the run begins,
-        radians, from 0 to pi/2: without one, a state that has lost its stability may be kept.
+        Largest angle by which a neighbour's shape is turned at random before the run begins [rad],
+        from 0 to pi/2. Without a kick, a run may stay in a state that has lost its stability.
     axes
-        What is varied, one at least; the last one varies fastest.
+        The axes, at least one; the last one varies fastest.
     """
 
     label: Literal["runs", "solved"] = Field(default="runs", description="'runs' or 'solved'")

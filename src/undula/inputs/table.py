@@ -1,9 +1,8 @@
-"""What all tables of an input file have in common: strict, frozen, and no idle keys.
+"""Base of all tables of an input file: strict, frozen, and without idle keys.
 
-Some keys have a meaning only for one choice of another key, as ``load.slope`` has for
-``load.profile = "linear"``. A table lists them in ``only_with``; giving such a key where
-nothing would read it is an error, because a setting that is silently ignored is a wrong
-result that looks right.
+Some keys have a meaning only for some values of another key, as ``load.slope`` for
+``load.profile = "linear"``. A table lists them in ``only_with``. Such a key is an error where
+nothing would use it, because a silently ignored setting gives a wrong result that looks right.
 """
 
 from collections.abc import Mapping
@@ -17,18 +16,22 @@ CONFLICT = "conflict"
 
 
 class OnlyWith(NamedTuple):
-    """The choice that gives a key its meaning: `chooser` must have one of `values`."""
+    """Condition for a key to have a meaning: the key `chooser` has one of `values`."""
 
     chooser: str
     values: tuple[str, ...]
 
 
 class Table(BaseModel):
-    """One table of the input file.
+    """Base class of the tables of an input file.
 
-    Types are taken strictly (a whole number may stand for a float, nothing else is converted),
-    NaN and infinity are refused, and so is any key that the table does not know. The
-    ``description`` of each field says what the key takes; error messages quote it.
+    Types are strict: a whole number is valid as a float, and nothing else is converted. NaN,
+    infinity and unknown keys are refused. Error messages quote the ``description`` of a field.
+
+    Attributes
+    ----------
+    only_with
+        Conditions of the keys that do not always have a meaning.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
@@ -40,7 +43,7 @@ class Table(BaseModel):
     def _has_a_meaning(cls, value: Any, info: ValidationInfo) -> Any:
         # Runs for given keys only: pydantic does not validate defaults.
         rule = cls.only_with.get(info.field_name or "")
-        # Where the chooser itself has no meaning, choosing otherwise there would not help.
+        # Where the chooser itself has no meaning, the message has to name the chooser of that.
         while rule is not None and rule.chooser in info.data:
             chosen = info.data[rule.chooser]
             outer = cls.only_with.get(rule.chooser)
@@ -64,5 +67,5 @@ class Table(BaseModel):
 
 
 def conflict(sentence: str) -> PydanticCustomError:
-    """Return the error for keys that are each right but do not go together."""
+    """Return the error for keys that are valid by themselves but not together."""
     return PydanticCustomError(CONFLICT, "{sentence}", {"sentence": sentence})

@@ -1,1 +1,1 @@
-"""The paper reproduced: its statements, computed and judged."""
+"""Reproduction of the paper: its claims, their computation and their verdicts."""

@@ -1,4 +1,4 @@
-"""`undula reproduce`: the catalogue computed as far as it is missing, judged, and reported."""
+"""`undula reproduce`: compute the missing tasks, judge the claims and write the report."""
 
 import json
 import time
@@ -11,42 +11,49 @@ from undula.interrupts import interruptible
 from undula.reproduction.claims.catalogue import Item, catalogue, chosen, paper_of
 from undula.reproduction.report.claim_table import row_of, rows_text, tally
 from undula.reproduction.report.page import write_report
-from undula.reproduction.tasks.folder import CLAIMS, refuse_foreign, report_claimed
-from undula.reproduction.tasks.queue import TaskWork
-from undula.reproduction.tasks.task import Job, answers_of, carry_out, jobs_of
+from undula.reproduction.tasks.folder import CLAIMS, locked_report, refuse_foreign
+from undula.reproduction.tasks.queue import ReproductionWork
+from undula.reproduction.tasks.task import (
+    ReproductionTask,
+    Tasks,
+    answers_of,
+    run_captured,
+    tasks_of,
+)
 from undula.storage.atomic import write_whole
 from undula.sweeps.own_workers import workers_that_fit
 from undula.sweeps.workers import LostError, pool
 from undula.terminal.output import DONE, INTERRUPTED, STOPPED_EARLY, finite, notice, reply
 from undula.terminal.progress import swept
 
-#: The exit status if a claim has another verdict than the one that is known to hold.
+#: Exit status if a claim has another verdict than the expected one.
 DIFFERS = 1
+#: Time to wait for results before the clock is checked again [s].
 _PATIENCE = 0.2
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a call asks for.
+class ReproductionRequest:
+    """Options of a reproduction.
 
     Attributes
     ----------
     catalogue
         Folder of the items.
     names
-        Items; none stands for all.
+        Names of the items; empty for all.
     quick
-        Whether coarser grids will do.
+        If true, coarser grids are used.
     out
         Folder of the report.
     workers
-        Processes; by default one for each processor.
+        Number of processes; None for one on each processor.
     budget
-        Seconds after which to stop with what there is.
+        Wall time after which the reproduction is stopped with the tasks that are done [s].
     vector
-        Whether figures are kept as PDF files as well.
+        If true, the figures are also written as PDF files.
     fresh
-        Whether tasks are done again that are done already.
+        If true, tasks that are done are computed again.
     run_command
         Import path of the function that runs a command of the catalogue.
     """
@@ -63,12 +70,19 @@ class Asked:
 
 
 def list_items(folder: Path, *, as_json: bool) -> int:
-    """Tell all items of a catalogue; return the exit status.
+    """List all items of a catalogue; return the exit status.
+
+    Parameters
+    ----------
+    folder
+        Folder of the catalogue.
+    as_json
+        If true, the answer is JSON.
 
     Raises
     ------
     InputError
-        There is no catalogue, or an item is wrong.
+        The folder holds no catalogue, or an item is wrong.
     """
     items = catalogue(folder)
     listed = [
@@ -77,150 +91,178 @@ def list_items(folder: Path, *, as_json: bool) -> int:
     ]
     width = max(map(len, items))
     text = "\n".join(
-        f"{one['name']:<{width}}  {one['title']}" + (f" ({one['paper']})" if one["paper"] else "")
-        for one in listed
+        f"{entry['name']:<{width}}  {entry['title']}"
+        + (f" ({entry['paper']})" if entry["paper"] else "")
+        for entry in listed
     )
     reply({"status": "done", "items": listed}, text, as_json=as_json)
     return DONE
 
 
-def reproduce(asked: Asked, *, as_json: bool) -> int:
-    """Compute what is missing, judge the claims, write the report, and answer.
+def reproduce(request: ReproductionRequest, *, as_json: bool) -> int:
+    """Compute the missing tasks, judge the claims, write the report, and answer.
+
+    Parameters
+    ----------
+    request
+        The options.
+    as_json
+        If true, the answer is JSON.
 
     Returns
     -------
     int
-        The exit status: 0 if all claims came out as is known, 1 if not, 3 if some of the tasks are
-        left or have failed, those done being kept.
+        The exit status: 0 if all claims have the expected verdict, 1 if not, 3 if some tasks are
+        missing or have failed and the others are kept.
 
     Raises
     ------
     InputError
-        There is no such item, or the folder holds something else, belongs to another process now,
-        cannot be written or is full.
+        An item is unknown, or the folder holds something else, is locked by another process, cannot
+        be written or is full.
     """
-    workers_that_fit(asked.workers)
-    items, paper = catalogue(asked.catalogue), paper_of(asked.catalogue)
-    wanted = chosen(items, asked.names)
-    with report_claimed(asked.out):
-        jobs = jobs_of(items, asked.catalogue / "inputs", asked.out / "data", quick=asked.quick)
-        left = [job for job in _needed(wanted, jobs) if asked.fresh or not job.is_done()]
-        for job in left:
-            refuse_foreign(job.folder)
+    workers_that_fit(request.workers)
+    items, paper = catalogue(request.catalogue), paper_of(request.catalogue)
+    wanted = chosen(items, request.names)
+    with locked_report(request.out):
+        tasks = tasks_of(
+            items, request.catalogue / "inputs", request.out / "data", quick=request.quick
+        )
+        left = [task for task in _needed(wanted, tasks) if request.fresh or not task.is_done()]
+        for task in left:
+            refuse_foreign(task.folder)
         try:
-            status = _carry_on(left, asked)
+            status = _compute(left, request)
         except LostError as lost:
-            status = lost.told
+            status = lost.text
         rows = {
-            name: _rows(name, item, jobs, asked, wanted=name in wanted)
+            name: _rows(name, item, tasks, request, wanted=name in wanted)
             for name, item in items.items()
         }
         page = write_report(
-            asked.out,
+            request.out,
             paper,
             items,
             rows,
-            jobs,
+            tasks,
             wanted=wanted.keys(),
-            quick=asked.quick,
-            vector=asked.vector,
-            run_command=asked.run_command,
+            quick=request.quick,
+            vector=request.vector,
+            run_command=request.run_command,
         )
-        _write_claims(asked, [row for name in items for row in rows[name]])
-    told = [row for name in wanted for row in rows[name]]
+        _write_claims(request, [row for name in items for row in rows[name]])
+    judged = [row for name in wanted for row in rows[name]]
+    return _answer(request, judged, page, status, as_json=as_json)
+
+
+def _answer(
+    request: ReproductionRequest,
+    judged: list[dict[str, Any]],
+    page: Path,
+    status: str,
+    *,
+    as_json: bool,
+) -> int:
+    """Answer with the rows of the wanted claims; return the exit status."""
     answer = {
         "status": status,
         "report": str(page),
-        "claims_file": str(asked.out / CLAIMS),
-        "verdicts": tally(told),
-        "claims": told,
+        "claims_file": str(request.out / CLAIMS),
+        "verdicts": tally(judged),
+        "claims": judged,
     }
-    reply(answer, rows_text(told, page), as_json=as_json)
+    reply(answer, rows_text(judged, page), as_json=as_json)
     if status != "done":
         notice(f"the reproduction was {status}; the same command goes on from there")
         return STOPPED_EARLY
-    return DIFFERS if any(row["as_expected"] is False for row in told) else DONE
+    return DIFFERS if any(row["as_expected"] is False for row in judged) else DONE
 
 
-def _write_claims(asked: Asked, claims: list[dict[str, Any]]) -> None:
-    content = json.dumps(finite({"quick": asked.quick, "claims": claims}), indent=1)
-    write_whole(asked.out / CLAIMS, content.encode(), overwrite=True)
+def _write_claims(request: ReproductionRequest, claims: list[dict[str, Any]]) -> None:
+    content = json.dumps(finite({"quick": request.quick, "claims": claims}), indent=1)
+    write_whole(request.out / CLAIMS, content.encode(), overwrite=True)
 
 
-def _needed(wanted: Mapping[str, Item], jobs: Mapping[str, Job]) -> list[Job]:
-    """Return the jobs of items, with those of others that they use."""
-    places = [f"{name}/{task}" for name, item in wanted.items() for task in item.tasks]
+def _needed(wanted: Mapping[str, Item], tasks: Tasks) -> list[ReproductionTask]:
+    """Return the tasks of items, with those of other items that they use."""
+    places = [f"{name}/{local}" for name, item in wanted.items() for local in item.tasks]
     places += [place for item in wanted.values() for place in item.uses.values()]
-    found = [jobs[place] for place in dict.fromkeys(places) if place in jobs]
-    by_folder = {job.folder: job for job in jobs.values()}
-    queue = list(found)
+    needed = [tasks[place] for place in dict.fromkeys(places) if place in tasks]
+    by_folder = {task.folder: task for task in tasks.values()}
+    queue = list(needed)
     while queue:
         for folder in queue.pop().needs:
-            if by_folder[folder] not in found:
-                found.append(by_folder[folder])
+            if by_folder[folder] not in needed:
+                needed.append(by_folder[folder])
                 queue.append(by_folder[folder])
-    return found
+    return needed
 
 
 def _rows(
-    name: str, item: Item, jobs: Mapping[str, Job], asked: Asked, *, wanted: bool
+    name: str,
+    item: Item,
+    tasks: Tasks,
+    request: ReproductionRequest,
+    *,
+    wanted: bool,
 ) -> list[dict[str, Any]]:
-    """Return the rows of an item's claims, without those that have not been asked for yet."""
-    answers = answers_of(item, name, jobs)
+    """Return the rows of an item's claims, without unwanted claims that were not computed."""
+    answers = answers_of(item, name, tasks)
     rows = [
-        row_of(name, item, claim, answers, jobs, quick=asked.quick, wanted=wanted)
+        row_of(name, item, claim, answers, tasks, quick=request.quick, wanted=wanted)
         for claim in item.claims
     ]
     return [row for row in rows if row is not None]
 
 
-def _carry_on(left: list[Job], asked: Asked) -> str:
-    """Do the jobs, as far as time and patience go; return how it ended."""
+def _compute(left: list[ReproductionTask], request: ReproductionRequest) -> str:
+    """Compute tasks within the budget; return the status of the answer."""
     if not left:
         return "done"
-    end = time.monotonic() + asked.budget
-    work = TaskWork(left)
+    end = time.monotonic() + request.budget
+    work = ReproductionWork(left)
     with interruptible() as interrupted:
 
         def stopped() -> bool:
             return interrupted() or time.monotonic() > end
 
-        while not stopped() and (job := work.take(all_cores=True)) is not None:
-            notice(job.told)
-            outcome = carry_out(asked.run_command, _limited(job, asked.workers, end), quietly=False)
+        while not stopped() and (task := work.take(all_cores=True)) is not None:
+            notice(task.typed)
+            command = _limited(task, request.workers, end)
+            outcome = run_captured(request.run_command, command, quietly=False)
             if _was_stopped(outcome):
                 return str(outcome["answer"].get("status", "interrupted"))
-            work.take_back(job, outcome)
+            work.take_back(task, outcome)
         with (
-            pool(asked.workers, None, _say_nothing) as workers,
-            swept("reproducing", work.total, work.left, "tasks") as tell,
+            pool(request.workers, None, _say_nothing) as workers,
+            swept("reproducing", work.total, work.left, "tasks") as show,
         ):
             while work.left and not stopped():
-                while workers.has_room and (job := work.take(all_cores=False)) is not None:
-                    workers.give(job, carry_out, asked.run_command, job.command)
-                for job, outcome in workers.come_back(_PATIENCE):
-                    work.take_back(job, outcome)
-                tell(work.left, work.failed)
+                while workers.has_room and (task := work.take(all_cores=False)) is not None:
+                    workers.give(task, run_captured, request.run_command, task.command)
+                for task, outcome in workers.come_back(_PATIENCE):
+                    work.take_back(task, outcome)
+                show(work.left, work.failed)
         if work.left:
             return "interrupted" if interrupted() else "out of time"
     return "incomplete" if work.failed else "done"
 
 
-def _limited(job: Job, workers: int | None, end: float) -> tuple[str, ...]:
-    """Return the command of a job that uses all cores, with the workers and time that it has."""
-    if job.command[0] != "sweep":
-        return job.command
+def _limited(task: ReproductionTask, workers: int | None, end: float) -> tuple[str, ...]:
+    """Return the command of a task on all cores, with its number of workers and its budget."""
+    if task.command[0] != "sweep":
+        return task.command
     limits = [] if workers is None else ["--workers", str(workers)]
     if end < float("inf"):
         limits += ["--budget", str(max(end - time.monotonic(), 1e-3))]
-    return (*job.command, *limits)
+    return (*task.command, *limits)
 
 
 def _was_stopped(outcome: dict[str, Any]) -> bool:
-    """Tell whether a command was left before its end, which the same command goes on from."""
+    """Return True for a command that was stopped early and can be continued."""
     early = outcome["status"] in (STOPPED_EARLY, INTERRUPTED)
     return early and outcome["answer"].get("status", "interrupted") != "done"
 
 
 def _say_nothing(sentence: str) -> None:
-    """Keep the dashboard's address to ourselves: there is one for each study as well."""
+    """Suppress the address of the dashboard, since each sweep has its own."""

@@ -1,4 +1,4 @@
-"""The names of the formats of stored results, each with its number."""
+"""Names and numbers of the formats of stored results."""
 
-#: Of a run.
+#: Format of a stored run.
 RUN_FORMAT = "run 1"

@@ -1,7 +1,8 @@
-"""The layout of a stored sweep: runs over axes and tries, labelled.
+"""Dimensions of a stored sweep, and the selection and reading of its verdicts.
 
-Its dimensions are the axes, named by their keys as "load.force", and `try`. `status` tells which of
-its points have an answer, `verdict` which, in words or as numbers with their meanings beside them.
+The dimensions are the axes, named by their keys such as "load.force", and the replicates, named
+"try". The variable `status` marks the points with a result; `verdict` holds the results in words,
+or as numbers with their meanings as attributes.
 """
 
 from collections.abc import Mapping
@@ -11,8 +12,9 @@ import xarray as xr
 
 from undula.errors import InputError
 
-#: The last dimension: several starts of one point.
-TRY = "try"
+#: The last dimension: replicates of one point, with different random starts.
+REPLICATE = "try"
+#: Values of `status`.
 NOT_DONE, DONE, FAILED = 0, 1, 2
 _NEEDED = ("status", "verdict")
 
@@ -23,19 +25,25 @@ def axes_of(store: xr.Dataset) -> tuple[str, ...]:
     Raises
     ------
     InputError
-        The dataset is no stored sweep.
+        The dataset is not a stored sweep.
     """
     missing = [name for name in _NEEDED if name not in store]
-    if missing or TRY not in store["status"].dims:
+    if missing or REPLICATE not in store["status"].dims:
         raise InputError(
-            f"the store lacks {', '.join(missing) or f'the dimension {TRY}'}; give one that a"
+            f"the store lacks {', '.join(missing) or f'the dimension {REPLICATE}'}; give one that a"
             " sweep has made"
         )
-    return tuple(str(name) for name in store["status"].dims if name != TRY)
+    return tuple(str(name) for name in store["status"].dims if name != REPLICATE)
 
 
 def verdicts_of(store: xr.Dataset) -> xr.DataArray:
-    """Return the verdicts in words, over the axes and tries; "" where there is none."""
+    """Return the verdicts in words, over the axes and replicates; "" at points without a verdict.
+
+    Raises
+    ------
+    InputError
+        The dataset is not a stored sweep.
+    """
     axes_of(store)
     stored = store["verdict"]
     meanings = stored.attrs.get("flag_meanings")
@@ -45,41 +53,55 @@ def verdicts_of(store: xr.Dataset) -> xr.DataArray:
 
 
 def varied(store: xr.Dataset) -> tuple[str, ...]:
-    """Return the names of the axes with more than one value, in their order."""
-    return tuple(name for name in axes_of(store) if store.sizes[name] > 1)
-
-
-def chosen(store: xr.Dataset, at: Mapping[str, float]) -> xr.Dataset:
-    """Return the part of a store at given values of some of its axes, which keep one value each.
+    """Return the names of the axes with more than one value, in their order.
 
     Raises
     ------
     InputError
-        There is no such axis, or no such value on it.
+        The dataset is not a stored sweep.
     """
-    for name, value in at.items():
+    return tuple(name for name in axes_of(store) if store.sizes[name] > 1)
+
+
+def chosen(store: xr.Dataset, place: Mapping[str, float]) -> xr.Dataset:
+    """Return the part of a store at given values of some of its axes.
+
+    Parameters
+    ----------
+    store
+        A stored sweep.
+    place
+        Value by name of axis, matched to a relative accuracy of 1e-6; the axis keeps this value
+        alone.
+
+    Raises
+    ------
+    InputError
+        The store has no such axis, or the axis no such value.
+    """
+    for name, value in place.items():
         if name not in axes_of(store):
-            known = ", ".join(axes_of(store))
-            raise InputError(f"{name} is no axis of the store; take one of {known}")
+            axes = ", ".join(axes_of(store))
+            raise InputError(f"{name} is no axis of the store; take one of {axes}")
         values = store[name].values
-        # Values are given to as many digits as people write.
-        found = np.flatnonzero(np.isclose(values, value, rtol=1e-6, atol=0.0))
-        if not found.size:
-            told = ", ".join(f"{each:g}" for each in values)
-            raise InputError(f"{name} = {value:g} is no value of the store; take one of {told}")
-        store = store.isel({name: found[:1]})
+        # People write values with fewer digits than are stored.
+        matches = np.flatnonzero(np.isclose(values, value, rtol=1e-6, atol=0.0))
+        if not matches.size:
+            listed = ", ".join(f"{stored:g}" for stored in values)
+            raise InputError(f"{name} = {value:g} is no value of the store; take one of {listed}")
+        store = store.isel({name: matches[:1]})
     return store
 
 
 def _named(stored: xr.DataArray, meanings: object) -> np.ndarray:
-    """Return codes in words; a code without a meaning is told as it is."""
-    # CF writes meanings into one string, with spaces between them and underscores within.
+    """Return codes in words; a code without a meaning is returned as "verdict" and the code."""
+    # The CF conventions join meanings into one string, with spaces between and underscores within.
     words = (
         [word.replace("_", " ") for word in meanings.split()]
         if isinstance(meanings, str)
         else [str(word) for word in meanings]  # type: ignore[attr-defined]
     )
     codes = stored.attrs.get("flag_values", range(len(words)))
-    known = {float(code): word for code, word in zip(codes, words, strict=True)}
-    flat = [known.get(float(code), f"verdict {code}") for code in stored.values.ravel()]
+    named = {float(code): word for code, word in zip(codes, words, strict=True)}
+    flat = [named.get(float(code), f"verdict {code}") for code in stored.values.ravel()]
     return np.array(flat, dtype=object).reshape(stored.shape).astype(str)

@@ -1,4 +1,4 @@
-"""The variables of a stored study: names, types, units and meanings."""
+"""Variables of a stored sweep: names, types, units and meanings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,26 +6,26 @@ from typing import Any
 
 import numpy as np
 
-#: Longest text that is kept of a point; longer ones are cut off.
+#: Longest stored text of a point in characters; longer ones are cut off.
 LONGEST_TEXT = 300
 
 
 @dataclass(frozen=True)
 class Column:
-    """A variable that has one value at each point.
+    """A variable of a stored sweep.
 
     Attributes
     ----------
     name
-        As in the record of a point.
+        Name in the store and in the record of a point.
     dtype
-        Numpy's name of its type.
+        Type, by its name in numpy.
     meaning
-        In words.
+        Meaning in words, stored as ``long_name``.
     quantity
-        What it is, to give it the model's unit; empty for what has none.
+        Physical quantity, which determines the unit; empty for a number without a unit.
     rest
-        Its value at points that are not done.
+        Value at points that are not done.
     """
 
     name: str
@@ -48,7 +48,7 @@ STATUS = Column("status", "int8", "whether the point is done", rest=0)
 STATUS_WORDS = ("not_done", "done", "failed")
 SEED = Column("seed", "int64", "seed of what is random in the start, -1 without", rest=-1)
 
-#: Of every study.
+#: Variables of every sweep.
 FIGURES = (
     _text("verdict", "what the motion is", 24),
     _number("margin", "factor by which the verdict's criteria are met"),
@@ -73,7 +73,7 @@ FIGURES = (
     _text("ending", "how the run has ended", 24),
     _text("reason", "why it has this verdict, or why it failed", LONGEST_TEXT),
 )
-#: Of a study of solved states besides.
+#: Further variables of a sweep of solved states.
 SOLVED = (
     _text("also", "other verdicts whose states are stable too", 48),
     *(
@@ -87,9 +87,9 @@ SOLVED = (
     _number("spinning_frequency", "frequency of the spinning state", "frequency"),
     _number("flapping_frequency", "frequency of the flapping state", "frequency"),
 )
-#: Of a study whose undecided points are decided by solved states.
+#: Further variable of a sweep whose undecided runs are decided by solved states.
 DECIDED = _text("decided_by", "what the verdict is from: 'run' or 'solved states'", 16)
-#: Of a study that keeps the last period, with the dimensions that its variables have besides.
+#: Further dimensions of the variables of a sweep that stores the last period.
 INNER: Mapping[str, tuple[str, ...]] = {
     "shape_times": ("shape",),
     "shapes": ("shape", "node", "axis"),
@@ -103,7 +103,13 @@ _OF_SHAPES = (
 
 
 def columns_of(label: str, keep: str, undecided: str) -> tuple[Column, ...]:
-    """Return the variables of a study, without its seeds."""
+    """Return the variables of a sweep, without its seeds.
+
+    Parameters
+    ----------
+    label, keep, undecided
+        Settings of the sweep, as in the table ``[study]`` of its input.
+    """
     solved = SOLVED if label == "solved" else ()
     decided = (DECIDED,) if undecided == "solve" else ()
     return (STATUS, *FIGURES, *solved, *decided, *(_OF_SHAPES if keep == "period" else ()))

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, whatever interrupts the writing."""
+"""Atomic writing of files: each appears whole or not at all, whatever interrupts the writing."""
 
 import errno
 import os
@@ -17,25 +17,25 @@ _CURES = {
 
 
 def write_whole(path: Path, content: bytes, *, overwrite: bool = False) -> None:
-    """Write a file under a temporary name beside its place, then move it there in one step.
+    """Write a file under a temporary name in the same folder, then rename it in one step.
 
     Parameters
     ----------
     path
-        The file to write; missing folders on the way are made.
+        The file; missing folders are made.
     content
         All its bytes.
     overwrite
-        Whether an existing file may be replaced. Of a link, the link itself is; where it points to
-        stays as it is.
+        If true, an existing file is replaced. A link is replaced itself, not the file that it
+        points to.
 
     Raises
     ------
     InputError
         The file exists and `overwrite` is false, or the folder cannot be written or is full.
-        A file that was there before is then left as it was.
+        An existing file then stays as it is.
     """
-    with folder_trouble_told(path):
+    with folder_errors_explained(path):
         _refuse_existing(path, overwrite)
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
@@ -50,24 +50,24 @@ def write_whole(path: Path, content: bytes, *, overwrite: bool = False) -> None:
 def _refuse_existing(path: Path, overwrite: bool) -> None:
     if path.is_dir():
         raise InputError(f"{path} is a folder; give the name of a file")
-    # A link counts as well, also one that leads nowhere.
+    # Links count as existing, broken ones too.
     if not overwrite and os.path.lexists(path):
         raise InputError(f"{path} exists already; give --overwrite to replace it")
 
 
 @contextmanager
-def folder_trouble_told(path: Path) -> Iterator[None]:
+def folder_errors_explained(path: Path) -> Iterator[None]:
     """Turn errors of writing a file into a sentence for the user.
 
     Parameters
     ----------
     path
-        The file, or a folder that holds many and is told in its place.
+        The file, or a folder of many files that the sentence names instead.
 
     Raises
     ------
     InputError
-        Its folder cannot be written or is full.
+        The folder of the file cannot be written or is full.
     """
     try:
         yield
@@ -83,7 +83,7 @@ def folder_trouble_told(path: Path) -> Iterator[None]:
 
 
 def _write_to_disk(path: Path, content: bytes) -> None:
-    # Refused where there is anything, a link too: nobody can have us write elsewhere.
+    # Mode "x" refuses existing names, links included, so that no link diverts the writing.
     with path.open("xb") as file:
         file.write(content)
         file.flush()
@@ -91,7 +91,7 @@ def _write_to_disk(path: Path, content: bytes) -> None:
 
 
 def _flush_folder(folder: Path) -> None:
-    # The new name itself survives a power cut only once its folder is on disk.
+    # The new name survives a power cut only after its folder is flushed to disk.
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -1,4 +1,4 @@
-"""A store as Zarr may see it: with metadata that were checked, and without chunks that are not."""
+"""A view of a Zarr store with checked metadata, in which damaged chunks are hidden."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,16 +12,16 @@ from undula.storage.zarr_metadata import is_metadata
 
 
 class SoundStore(WrapperStore[LocalStore]):
-    """A folder with metadata from elsewhere, of which some files cannot be seen.
+    """A store in a folder, with given metadata and with hidden files.
 
     Parameters
     ----------
     store
         The folder.
     metadata
-        All metadata, by the names of their files.
+        All metadata, by the names of their files; those in the folder are ignored.
     hidden
-        Names of the files that cannot be seen; more may be added at any time.
+        Names of the hidden files; more may be added at any time.
     """
 
     def __init__(
@@ -33,7 +33,17 @@ class SoundStore(WrapperStore[LocalStore]):
 
     @classmethod
     def of(cls, path: Path, metadata: Mapping[str, bytes], *, read_only: bool) -> Self:
-        """Return the store in a folder."""
+        """Return the store in a folder, without hidden files.
+
+        Parameters
+        ----------
+        path
+            The folder.
+        metadata
+            All metadata, by the names of their files.
+        read_only
+            If true, the store cannot be written.
+        """
         return cls(LocalStore(path, read_only=read_only), metadata)
 
     def _with_store(self, store: LocalStore) -> Self:
@@ -45,16 +55,16 @@ class SoundStore(WrapperStore[LocalStore]):
         prototype: BufferPrototype,
         byte_range: ByteRequest | None = None,
     ) -> Buffer | None:
-        """Return the bytes of a file, None if there is none to be seen."""
+        """Return the bytes of a file, None if it does not exist or is hidden."""
         if is_metadata(key):
-            told = self._metadata.get(key)
-            return None if told is None else prototype.buffer.from_bytes(told)
+            content = self._metadata.get(key)
+            return None if content is None else prototype.buffer.from_bytes(content)
         if key in self.hidden:
             return None
         return await super().get(key, prototype, byte_range)
 
     async def exists(self, key: str) -> bool:
-        """Tell whether there is a file to be seen."""
+        """Return True if a file exists and is not hidden."""
         if is_metadata(key):
             return key in self._metadata
         return key not in self.hidden and await super().exists(key)

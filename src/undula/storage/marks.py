@@ -1,6 +1,6 @@
-"""The mark of undula in files that it makes: by it they are known for ours, and may be replaced.
+"""The mark of undula in its output files, by which it recognises files that it may replace.
 
-Results are marked by `undula_format`, figures, movies and pages by the views that write them.
+Results carry the attribute `undula_format`; figures, movies and pages are marked by their views.
 """
 
 import mmap
@@ -8,7 +8,7 @@ import os
 import stat
 from pathlib import Path
 
-#: How the mark reads in the bytes of a file, by its ending.
+#: Bytes of the mark in a file, by the ending of its name.
 _MARKS = {
     ".nc": b"undula_format",
     ".png": b"tEXtSoftware\0undula",
@@ -20,16 +20,16 @@ _MARKS = {
 
 
 def carries_mark(path: Path) -> bool:
-    """Tell whether a file is one that undula has made, as its content tells.
+    """Return True if the content of a file carries the mark of undula.
 
-    A link never is, wherever it leads.
+    Links are not followed and never carry it.
 
     Parameters
     ----------
     path
-        Its name, whose ending tells what it would be.
+        The file; the ending of its name determines its format.
     """
-    mark = _MARKS.get(path.suffix.lower(), _MARKS[".nc"])  # results may be called anything
+    mark = _MARKS.get(path.suffix.lower(), _MARKS[".nc"])  # results may have any ending
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError:

@@ -1,8 +1,8 @@
-"""A name on disk that one process has for itself, until it gives it back or ends.
+"""Lock on a file name, held by one process until it releases it or ends.
 
-The lock is one of the system on a file beside the name, so that it ends with the process however
-that ends. The file holds a mark, by which it is known for ours: it goes with the lock, one that a
-killed process has left is taken over, and one that somebody else has made is left as it is.
+The operating system locks a file next to the name, so that the lock ends with the process in every
+case. The lock file carries a mark of undula. It is removed with the lock; one left by a killed
+process is used again, and one without the mark is not removed.
 """
 
 import errno
@@ -14,35 +14,35 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from undula.errors import InputError
-from undula.storage.atomic import folder_trouble_told
+from undula.storage.atomic import folder_errors_explained
 
 _MARK = b"a lock of undula\n"
-#: File systems without locks: better to write there unguarded than not at all.
+#: Errors of file systems without locks, where files are written unguarded.
 _WITHOUT_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 
 
 @contextmanager
 def locked(path: Path, busy: str, *, lock: Path | None = None) -> Iterator[None]:
-    """Have a name, in a folder that is there, for this process alone.
+    """Hold the lock on a name in an existing folder.
 
     Parameters
     ----------
     path
         The name.
     busy
-        The sentence if another process has it.
+        Sentence of the error if another process holds the lock.
     lock
-        The file whose lock stands for the name; by default beside it.
+        The lock file; by default a hidden file next to the name.
 
     Raises
     ------
     InputError
-        Another process has it, the folder cannot be written or is full, or the place of the lock is
-        taken by a link or by something else than a file.
+        Another process holds the lock, the folder cannot be written or is full, or the lock file is
+        a link or not a plain file.
     """
     lock = lock or path.with_name(f".{path.name}.lock")
-    with folder_trouble_told(path):
-        descriptor = _taken(lock)
+    with folder_errors_explained(path):
+        descriptor = _acquired(lock)
         if descriptor is not None:
             _mark(descriptor)
     if descriptor is None:
@@ -56,8 +56,8 @@ def locked(path: Path, busy: str, *, lock: Path | None = None) -> Iterator[None]
         os.close(descriptor)
 
 
-def _taken(lock: Path) -> int | None:
-    """Return the locked file; None if another process has it."""
+def _acquired(lock: Path) -> int | None:
+    """Return the descriptor of the locked file; None if another process holds the lock."""
     flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     while True:
         if lock.is_symlink():
@@ -76,7 +76,7 @@ def _taken(lock: Path) -> int | None:
                 raise
         if _is_still_there(descriptor, lock):
             return descriptor
-        # Its last holder has removed it after it was opened here.
+        # The last holder of the lock has removed the file after it was opened here.
         os.close(descriptor)
 
 

@@ -1,8 +1,8 @@
-"""Names that a command is going to write: claimed before its work, held by a lock until its end.
+"""Claims on the output files of a command: checked and locked before its work, until its end.
 
-Every command that writes files asks for their names here. What exists already is replaced if the
-user says so, or if it carries our mark and the command is there to renew it; what a command reads
-is never replaced, and nothing is written through a link.
+Every command that writes files claims their names here. An existing file is replaced if the user
+allows it, or if it carries the mark of undula and the command renews it. Files that the command
+reads are never replaced, and nothing is written through a link.
 """
 
 import os
@@ -14,51 +14,51 @@ from itertools import combinations, product
 from pathlib import Path
 
 from undula.errors import InputError
-from undula.storage.atomic import folder_trouble_told, write_whole
+from undula.storage.atomic import folder_errors_explained, write_whole
 from undula.storage.marks import carries_mark
 from undula.storage.name_lock import locked
 
-#: Bytes that a name grows by while its file is written.
+#: Growth of a name while its file is written, and the longest name [bytes].
 _GROWTH, _LONGEST = 25, 255
 
 
 @dataclass(frozen=True)
 class Claim:
-    """What may be done to the names that a command has claimed.
+    """Permissions to write the files that a command has claimed.
 
     Attributes
     ----------
     renewed
-        Names under which there may be a file already, if it carries our mark.
+        Files that may be replaced if they carry the mark of undula.
     continued
-        Names of files that the command goes on with, whose content it checks itself.
+        Files that the command continues, whose content it checks itself.
     overwrite
-        Whether any file may be replaced.
+        If true, any file may be replaced.
     """
 
     renewed: frozenset[Path] = frozenset()
     continued: frozenset[Path] = frozenset()
     overwrite: bool = False
 
-    def check(self, path: Path) -> None:
-        """Refuse to write a file where there is something that is not to be replaced.
+    def check_writable(self, path: Path) -> None:
+        """Refuse a name that the claim does not allow to write.
 
         Raises
         ------
         InputError
-            There is.
+            The name belongs to a folder, a special file, or a file that must not be replaced.
         """
-        with folder_trouble_told(path):
-            found = _kind(path)
-        if found is None:
+        with folder_errors_explained(path):
+            mode = _mode(path)
+        if mode is None:
             return
-        if stat.S_ISDIR(found) or path.is_dir():
+        if stat.S_ISDIR(mode) or path.is_dir():
             raise InputError(f"{path} is a folder; give the name of a file")
-        if not stat.S_ISREG(found) and not stat.S_ISLNK(found):
+        if not stat.S_ISREG(mode) and not stat.S_ISLNK(mode):
             raise InputError(f"{path} is no plain file; give another name")
         if self.overwrite:
             return
-        if path in self.renewed | self.continued and stat.S_ISLNK(found):
+        if path in self.renewed | self.continued and stat.S_ISLNK(mode):
             raise InputError(
                 f"{path} is a link; give the name of the file itself, or --overwrite to replace the"
                 " link"
@@ -75,24 +75,31 @@ class Claim:
     def write(self, path: Path, content: bytes) -> None:
         """Write a file, whole or not at all.
 
+        Parameters
+        ----------
+        path
+            The file.
+        content
+            All its bytes.
+
         Raises
         ------
         InputError
-            There is something that is not to be replaced, also if it has come since the name was
-            claimed; or the folder cannot be written or is full.
+            A file that must not be replaced exists, which may be newer than the claim; or the
+            folder cannot be written or is full.
         """
-        self.check(path)
+        self.check_writable(path)
         write_whole(path, content, overwrite=True)
 
 
 def discard(path: Path) -> None:
-    """Remove a file, if it is one of ours: what is not stays, whatever was asked for."""
+    """Remove a file if it carries the mark of undula; leave any other file."""
     if carries_mark(path):
         path.unlink(missing_ok=True)
 
 
 def renewing(path: Path) -> Claim:
-    """Return the claim on a file in a folder that is ours: what carries our mark is renewed."""
+    """Return a claim without a lock on a file that is renewed, in a folder that undula manages."""
     return Claim(renewed=frozenset([path]))
 
 
@@ -104,58 +111,58 @@ def claimed(
     overwrite: bool = False,
     reads: Sequence[Path] = (),
 ) -> Iterator[Claim]:
-    """Have names for this process alone.
+    """Claim and lock the output files of a command.
 
-    Missing folders on the way are made, and those in which nothing was written removed again.
+    Missing folders are made; those in which nothing was written are removed at the end.
 
     Parameters
     ----------
     names
-        Of the files to be written.
+        All files to be written.
     renewed
-        Those of them that may be there already, if they carry our mark.
+        Those of them that may exist if they carry the mark of undula.
     continued
-        Those of them that the command goes on with: it reads them itself, once they are its own.
+        Those of them that the command continues: it reads them itself while it holds the lock.
     overwrite
-        Whether any file may be replaced.
+        If true, any file may be replaced.
     reads
-        Files that the command reads, which is none of these under any name.
+        Files that the command reads; none of them may be an output, under any name.
 
     Raises
     ------
     InputError
-        Another process has one of the names, there is something that is not to be replaced, the
-        command reads it, or a folder cannot be written or is full.
+        Another process has locked a name, a file exists that must not be replaced or that the
+        command reads, or a folder cannot be written or is full.
     """
     claim = Claim(frozenset(renewed), frozenset(continued), overwrite)
     _refuse_what_is_read(names, reads)
-    with ExitStack() as held:
+    with ExitStack() as locks:
         for path in names:
             _refuse_long(path)
-            held.enter_context(_folder_made(path))
+            locks.enter_context(_folder_made(path))
             busy = f"another undula is at work on {path}; wait for it, or give another name"
-            held.enter_context(locked(path, busy))
+            locks.enter_context(locked(path, busy))
         for path in names:
-            claim.check(path)
+            claim.check_writable(path)
         yield claim
 
 
 @contextmanager
 def _folder_made(path: Path) -> Iterator[None]:
     folders = (path.parent, *path.parent.parents)
-    with folder_trouble_told(path):
+    with folder_errors_explained(path):
         missing = [folder for folder in folders if not os.path.lexists(folder)]
         path.parent.mkdir(parents=True, exist_ok=True)
     try:
         yield
     finally:
-        with suppress(OSError):  # which ends at the first one that is not empty
+        with suppress(OSError):  # ends at the first folder that is not empty
             for folder in missing:
                 folder.rmdir()
 
 
 def _refuse_what_is_read(names: Sequence[Path], reads: Sequence[Path]) -> None:
-    """Refuse an output that is an input or another output, under this name or another one."""
+    """Refuse an output that is an input or another output, under the same or another name."""
     pairs = [*product(names, reads), *combinations(names, 2)]
     for written, other in pairs:
         if written == other or _same(written, other):
@@ -165,9 +172,9 @@ def _refuse_what_is_read(names: Sequence[Path], reads: Sequence[Path]) -> None:
             )
 
 
-def _same(one: Path, other: Path) -> bool:
+def _same(left: Path, right: Path) -> bool:
     try:
-        return one.samefile(other)
+        return left.samefile(right)
     except OSError:
         return False
 
@@ -177,8 +184,8 @@ def _refuse_long(path: Path) -> None:
         raise InputError(f"{path.name[:40]}... is too long a name; give a shorter one")
 
 
-def _kind(path: Path) -> int | None:
-    """Return the mode of what is there, of a link that of itself; None if there is nothing."""
+def _mode(path: Path) -> int | None:
+    """Return the mode of a file, of a link its own; None if nothing has the name."""
     try:
         return os.lstat(path).st_mode
     except FileNotFoundError:

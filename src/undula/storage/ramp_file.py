@@ -1,4 +1,4 @@
-"""The steps of a series as a result file, to be drawn and to be gone on with."""
+"""Result files of quasi-static ramps, which are drawn and continued."""
 
 import json
 import platform
@@ -44,18 +44,18 @@ _QUANTITIES = {
 
 @dataclass(frozen=True)
 class Series:
-    """Everything that determines a series of steps.
+    """A ramp with its input.
 
     Attributes
     ----------
     input
         The complete input in plain JSON types.
     load
-        Model and load in a few words, without the parameter that is varied.
+        Model and load in a few words, without the varied parameter.
     model
         The model that the input describes.
     course
-        The values of the parameter, in order.
+        The values of the parameter in order, with kick and seed.
     """
 
     input: Mapping[str, Any]
@@ -65,28 +65,27 @@ class Series:
 
 
 def write_ramp(path: Path, series: Series, steps: Sequence[Step]) -> None:
-    """Write the steps of a series so far, whole or not at all, in place of any earlier ones.
+    """Write the steps of a ramp so far in place of an earlier file, whole or not at all.
 
     Parameters
     ----------
     path
-        The file to write; missing folders on the way are made.
+        The file; missing folders are made.
     series
-        What makes the steps.
+        The ramp with its input.
     steps
-        One at least.
+        The steps so far, at least one.
 
     Raises
     ------
     InputError
-        The folder cannot be written or is full. A file that was there before is then left as it
-        was.
+        The folder cannot be written or is full. An earlier file then stays as it is.
     """
     write_result(path, dataset_of_steps(series, steps), STEPS, overwrite=True)
 
 
 def load_ramp(path: Path | str) -> xr.Dataset:
-    """Read a stored series of steps.
+    """Read a stored quasi-static ramp.
 
     Parameters
     ----------
@@ -96,13 +95,20 @@ def load_ramp(path: Path | str) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        With the dims step, shape, node and axis, in memory; docs/output.md lists its content.
+        The steps over the dims step, shape, node and axis, in memory; docs/output.md lists its
+        variables.
 
     Raises
     ------
     InputError
-        The file is missing, unreadable, cut short, or not written by ``undula step``; or other
-        software has stored it without something that belongs to it.
+        The file is missing, unreadable, cut short or not written by ``undula step``; or other
+        software has stored it without some of its variables.
+
+    Examples
+    --------
+    >>> import undula
+    >>> stored = undula.load_ramp("results/steps.nc")  # doctest: +SKIP
+    >>> stored["verdict"].values  # doctest: +SKIP
     """
     stored = read_result(Path(path), STEPS)
     missing = [name for name in _variables() if name not in stored]
@@ -115,7 +121,15 @@ def load_ramp(path: Path | str) -> xr.Dataset:
 
 
 def dataset_of_steps(series: Series, steps: Sequence[Step]) -> xr.Dataset:
-    """Return a series as a dataset with dims step, shape, node and axis."""
+    """Return the steps of a ramp as a dataset over the dims step, shape, node and axis.
+
+    Parameters
+    ----------
+    series
+        The ramp with its input.
+    steps
+        The steps so far, at least one.
+    """
     units = series.model.units.names()
     variables: dict[str, Any] = {}
     for field in fields(Step):
@@ -133,29 +147,40 @@ def dataset_of_steps(series: Series, steps: Sequence[Step]) -> xr.Dataset:
 
 
 def stored_steps(stored: xr.Dataset) -> list[Step]:
-    """Return the steps that a dataset of them holds, bit for bit as they were stored."""
+    """Return the steps in a stored ramp, bit for bit as they were written."""
     count = stored.sizes["step"]
     columns = {field.name: _read_column(field, stored) for field in fields(Step)}
     return [Step(**{name: column[k] for name, column in columns.items()}) for k in range(count)]
 
 
 def refuse_another_series(path: Path, stored: xr.Dataset, series: Series) -> None:
-    """Refuse to go on with steps that something else has made.
+    """Refuse to continue the steps of another ramp.
+
+    Parameters
+    ----------
+    path
+        The file, for the sentence.
+    stored
+        Its content.
+    series
+        The wanted ramp.
 
     Raises
     ------
     InputError
-        The input, an option or the version differs: the first that does is named.
+        The input, an option or the version differs; the sentence names the first difference.
     """
-    found, wanted = stored.attrs, _attributes(series)
-    writer, reader = (json.loads(one["versions"])["undula"] for one in (found, wanted))
+    present, wanted = stored.attrs, _attributes(series)
+    writer, reader = (
+        json.loads(attributes["versions"])["undula"] for attributes in (present, wanted)
+    )
     if writer != reader:
         raise InputError(
             f"{path} was written by undula {writer} and cannot be gone on with by undula {reader};"
             " go on with that version, or start afresh with --overwrite"
         )
-    for what in ("input", "options"):
-        difference = _difference(json.loads(found[what]), json.loads(wanted[what]))
+    for name in ("input", "options"):
+        difference = _difference(json.loads(present[name]), json.loads(wanted[name]))
         if difference is not None:
             raise InputError(
                 f"{path} holds steps of another series, {difference}; give another --out, or start"
@@ -164,7 +189,8 @@ def refuse_another_series(path: Path, stored: xr.Dataset, series: Series) -> Non
 
 
 def _attributes(series: Series) -> dict[str, str]:
-    versions = {"python": platform.python_version()} | {one: version(one) for one in _LIBRARIES}
+    versions = {name: version(name) for name in _LIBRARIES}
+    versions = {"python": platform.python_version()} | versions
     return {
         "input": json.dumps(series.input),
         "options": json.dumps(_options(series.course)),
@@ -177,19 +203,19 @@ def _attributes(series: Series) -> dict[str, str]:
 
 
 def _options(course: Ramp) -> dict[str, Any]:
-    """Return a course in plain JSON types, under the names of the options that ask for it."""
+    """Return the values of a ramp in plain JSON types, under the names of the options."""
     first, last, count = course.values[0], course.values[-1], len(course.values)
-    # Not all the values: an attribute has to be short.
+    # Without the single values, since an attribute has to be short.
     along = f"{course.parameter} from {first!r} to {last!r}, {count} values"
     return {"along": along, "down": course.back, "kick": course.kick, "seed": course.seed}
 
 
 def _columns(field: Field[Any], steps: Sequence[Step]) -> Iterator[tuple[str, Any]]:
-    """Yield the variables that hold a field of all steps: three of a range, or one."""
+    """Yield the variables that hold a field of all steps: three for a range, or one."""
     column = [getattr(step, field.name) for step in steps]
     if field.type is Range:
         for bound in _BOUNDS:
-            yield f"{field.name}_{bound}", np.array([getattr(one, bound) for one in column])
+            yield f"{field.name}_{bound}", np.array([getattr(values, bound) for values in column])
     else:
         yield field.name, np.array(column)
 
@@ -204,19 +230,21 @@ def _variables() -> Iterator[str]:
 def _read_column(field: Field[Any], stored: xr.Dataset) -> Sequence[Any]:
     if field.type is Range:
         bounds = (stored[f"{field.name}_{bound}"].values.tolist() for bound in _BOUNDS)
-        return [Range(*each) for each in zip(*bounds, strict=True)]
+        return [Range(*values) for values in zip(*bounds, strict=True)]
     values = stored[field.name].values
     return list(values) if field.name in _SHAPED else list(values.tolist())
 
 
-def _difference(found: Mapping[str, Any], wanted: Mapping[str, Any], at: str = "") -> str | None:
-    """Return in words the first key whose values differ; None if there is none."""
-    for key in dict.fromkeys([*wanted, *found]):
-        one, other = found.get(key), wanted.get(key)
-        if isinstance(one, Mapping) and isinstance(other, Mapping):
-            inner = _difference(one, other, f"{at}{key}.")
+def _difference(
+    stored: Mapping[str, Any], wanted: Mapping[str, Any], prefix: str = ""
+) -> str | None:
+    """Return in words the first key whose values differ; None if all are equal."""
+    for key in dict.fromkeys([*wanted, *stored]):
+        old, new = stored.get(key), wanted.get(key)
+        if isinstance(old, Mapping) and isinstance(new, Mapping):
+            inner = _difference(old, new, f"{prefix}{key}.")
             if inner is not None:
                 return inner
-        elif one != other:
-            return f"with {at}{key} = {json.dumps(one)} instead of {json.dumps(other)}"
+        elif old != new:
+            return f"with {prefix}{key} = {json.dumps(old)} instead of {json.dumps(new)}"
     return None

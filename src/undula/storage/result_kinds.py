@@ -1,4 +1,4 @@
-"""The kinds of result files, and the sentences with which others are refused."""
+"""Kinds of result files, and checks that refuse files of another kind."""
 
 import json
 from collections.abc import Mapping
@@ -19,9 +19,9 @@ class Kind:
     Attributes
     ----------
     format
-        Its name and number, which every file of it carries.
+        Name and number of the format, which every file carries.
     command
-        What writes such files.
+        Command that writes such files.
     """
 
     format: str
@@ -30,36 +30,74 @@ class Kind:
 
 RUN = Kind(RUN_FORMAT, "undula run")
 
-#: Attributes of any kind that are JSON.
+#: Attributes that hold JSON, in files of any kind.
 _JSON = ("input", "versions", "summary", "health", "options", "units")
 
 
 def damaged(path: Path, kind: Kind) -> InputError:
-    """Return the error of a file that cannot be read."""
+    """Return the error for a file that cannot be read.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        The expected kind.
+    """
     return InputError(f"{path} is cut short or damaged; make it again with {kind.command}")
 
 
 def check_format(path: Path, kind: Kind, attributes: Mapping[str, Any]) -> None:
-    """Refuse a result of another kind or format, by the attributes of its root."""
-    found = attributes.get("undula_format")
-    if found is None:
+    """Refuse a result of another kind or format.
+
+    Parameters
+    ----------
+    path
+        The file, for the sentence.
+    kind
+        The expected kind.
+    attributes
+        Attributes of the root group.
+
+    Raises
+    ------
+    InputError
+        The file is not a result of this kind and format.
+    """
+    written = attributes.get("undula_format")
+    if written is None:
         raise InputError(
             f"{path} was not written by undula; give a result file written by {kind.command}"
         )
-    if str(found).split()[:1] != kind.format.split()[:1]:
+    if str(written).split()[:1] != kind.format.split()[:1]:
         raise InputError(
-            f"{path} is a result of another command ({str(found)!r}); give a result file written"
+            f"{path} is a result of another command ({str(written)!r}); give a result file written"
             f" by {kind.command}"
         )
-    if found != kind.format:
+    if written != kind.format:
         raise InputError(
-            f"{path} has the format {str(found)!r}, but this version of undula reads"
+            f"{path} has the format {str(written)!r}, but this version of undula reads"
             f" {kind.format!r}; use the version that wrote it"
         )
 
 
 def refuse_broken_attributes(path: Path, kind: Kind, dataset: xr.Dataset) -> None:
-    """Refuse attributes that are no JSON any longer, of a file that other software has stored."""
+    """Refuse a file of other software in which an attribute is no longer valid JSON.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        The expected kind.
+    dataset
+        Its content.
+
+    Raises
+    ------
+    InputError
+        An attribute is not JSON.
+    """
     for name in _JSON:
         try:
             json.loads(dataset.attrs.get(name, "{}"))

@@ -1,10 +1,10 @@
-"""The only reader and writer of result files: one NetCDF4 file for a run.
+"""Reader and writer of result files: one NetCDF4 file for a run.
 
-The root group holds the trajectory, as any NetCDF reader shows it; the group ``checkpoint``
-holds the arrays that continue the run, bit for bit. A file appears whole or not at all, and
-the same content always gives the same bytes. Other kinds of results are files of a root group
-alone. A checksum behind all is held against the bytes before HDF5 sees them; the checkpoint carries
-another, since it holds good also in a file that was annotated by other software.
+The root group holds the trajectory, as any NetCDF reader shows it. The group ``checkpoint`` holds
+the arrays that continue the run, bit for bit. A file appears whole or not at all, and the same
+content always gives the same bytes. Other kinds of results have a root group alone. A checksum at
+the end of the file is verified before HDF5 reads a byte. The checkpoint has its own checksum, which
+stays valid in a file that other software has annotated.
 """
 
 from collections.abc import Mapping
@@ -34,12 +34,12 @@ from undula.storage.zarr_metadata import is_store, read_metadata
 
 _ENGINE: Any = "h5netcdf"
 _CHECKPOINT = "checkpoint"
-# NetCDF hands the dimensions of the root down to the group: an array called "time" there would
-# pass for the coordinate of the dimension "time".
+# In NetCDF a group inherits the dimensions of the root: an array called "time" there would become
+# the coordinate of the dimension "time".
 _SAVED = "saved_"
 _DIGEST = "sha256"
-#: What a checkpoint goes on with besides its arrays: attributes of the root.
-_GOES_ON_WITH = ("input", "versions", "summary")
+#: Attributes of the root that a checkpoint belongs to.
+_BELONGS_TO = ("input", "versions", "summary")
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -55,35 +55,63 @@ def write_run(
     Parameters
     ----------
     path
-        The file to write; missing folders on the way are made.
+        The file; missing folders are made.
     dataset
         Trajectory, observables and attributes. The attribute ``undula_format`` is added.
     checkpoint
-        Name to array of float64, int64 or bool and of any shape, kept bit for bit.
+        Arrays of float64, int64 or bool by name, of any shape, stored bit for bit.
     overwrite
-        Whether an existing file may be replaced.
+        If true, an existing file is replaced.
 
     Raises
     ------
     InputError
         The file exists and `overwrite` is false, or the folder cannot be written or is full.
-        A file that was there before is then left as it was.
+        An existing file then stays as it is.
     """
     write_whole(path, run_image(dataset, checkpoint), overwrite=overwrite)
 
 
 def run_image(dataset: xr.Dataset, checkpoint: Mapping[str, npt.NDArray[Any]]) -> bytes:
-    """Return the bytes of the file that `write_run` writes."""
+    """Return the bytes of the file that `write_run` writes.
+
+    Parameters
+    ----------
+    dataset
+        Content of the root group.
+    checkpoint
+        Arrays that continue the run, by name.
+    """
     return _image(RUN, dataset, checkpoint)
 
 
 def write_result(path: Path, dataset: xr.Dataset, kind: Kind, *, overwrite: bool = False) -> None:
-    """Write a result of another kind, without a checkpoint, as `write_run` does."""
+    """Write a result of another kind, without a checkpoint, as `write_run` does.
+
+    Parameters
+    ----------
+    path
+        The file.
+    dataset
+        Content of the root group.
+    kind
+        Kind of the result.
+    overwrite
+        If true, an existing file is replaced.
+    """
     write_whole(path, _image(kind, dataset), overwrite=overwrite)
 
 
 def read_result(path: Path, kind: Kind) -> xr.Dataset:
-    """Read a result of another kind, as `load_result` does."""
+    """Read a result of another kind, as `load_result` does.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        Kind of the result.
+    """
     return _read(path, kind)
 
 
@@ -104,6 +132,12 @@ def load_result(path: Path | str) -> xr.Dataset:
     ------
     InputError
         The file is missing, unreadable, cut short, or not a result file of undula.
+
+    Examples
+    --------
+    >>> import undula
+    >>> stored = undula.load_result("results/spinning/run.nc")  # doctest: +SKIP
+    >>> stored["tip_radius"].max()  # doctest: +SKIP
     """
     return _read(Path(path), RUN)
 
@@ -119,7 +153,7 @@ def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
     Returns
     -------
     dict
-        Name to array, with the values, types and shapes that were written.
+        Arrays by name, with the values, types and shapes that were written.
 
     Raises
     ------
@@ -128,7 +162,7 @@ def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
     """
     stored, root = _read(path, RUN, _CHECKPOINT), _read(path, RUN)
     arrays = {str(name).removeprefix(_SAVED): array.values for name, array in stored.items()}
-    # Files of earlier versions have none.
+    # Files of earlier versions carry no digest.
     if stored.attrs.get(_DIGEST, _digest(arrays, root)) != _digest(arrays, root):
         raise InputError(
             f"the checkpoint of {path} is not as undula run wrote it, or is not of this input;"
@@ -140,21 +174,21 @@ def load_checkpoint(path: Path) -> dict[str, npt.NDArray[Any]]:
 def _image(
     kind: Kind, dataset: xr.Dataset, checkpoint: Mapping[str, npt.NDArray[Any]] | None = None
 ) -> bytes:
-    """Return the bytes of the file: made in memory, a full disk cannot leave HDF5 half open."""
+    """Return the bytes of the file, made in memory: HDF5 cannot handle a full disk."""
     image = BytesIO()
     _append(image, dataset.assign_attrs(undula_format=kind.format), group=None)
     if checkpoint is not None:
-        arrays = {name: np.asarray(kept) for name, kept in checkpoint.items()}
-        named = {f"{_SAVED}{name}": _as_variable(name, kept) for name, kept in arrays.items()}
+        arrays = {name: np.asarray(values) for name, values in checkpoint.items()}
+        named = {f"{_SAVED}{name}": _as_variable(name, values) for name, values in arrays.items()}
         attributes = {_DIGEST: _digest(arrays, dataset)}
         _append(image, xr.Dataset(named, attrs=attributes), group=_CHECKPOINT)
     return sealed(image.getvalue())
 
 
 def _digest(arrays: Mapping[str, npt.NDArray[Any]], root: xr.Dataset) -> str:
-    """Return the digest of a checkpoint and of what it goes on with."""
+    """Return the digest of a checkpoint and of the attributes that it belongs to."""
     return digest_of_arrays(
-        arrays, {name: str(root.attrs[name]) for name in _GOES_ON_WITH if name in root.attrs}
+        arrays, {name: str(root.attrs[name]) for name in _BELONGS_TO if name in root.attrs}
     )
 
 
@@ -163,34 +197,34 @@ def _as_variable(name: str, values: npt.NDArray[Any]) -> xr.Variable:
         raise TypeError(
             f"checkpoint array {name} has type {values.dtype}, not float64, int64, bool"
         )
-    # The dot keeps these names apart from those of other arrays.
+    # The dot separates these names from those of other arrays.
     return xr.Variable([f"{_SAVED}{name}.axis{axis}" for axis in range(values.ndim)], values)
 
 
 def _append(image: BytesIO, content: xr.Dataset, group: str | None) -> None:
-    # Encodings left over from a file that was read would change the bytes.
+    # Encodings of a file that was read would change the bytes.
     plain = content.drop_encoding()
     encoding = {name: _encoding(variable) for name, variable in plain.variables.items()}
     mode: Any = "w" if group is None else "a"
-    # Inside of a worker xarray would ask the scheduler for a lock of what is in memory here.
+    # In a worker of Dask, xarray would ask the scheduler for a lock, even on a file in memory.
     with dask.config.set(scheduler="synchronous"):
         plain.to_netcdf(image, mode=mode, group=group, engine=_ENGINE, encoding=encoding)
 
 
 def _encoding(variable: xr.Variable) -> dict[str, Any]:
-    # No fill value: every number, NaN too, is kept as it is.
-    keep = {"_FillValue": None}
+    # Without a fill value every number, including NaN, is stored as it is.
+    plain: dict[str, Any] = {"_FillValue": None}
     if variable.ndim < 2 or variable.size == 0:
-        return keep
-    return keep | {"zlib": True, "complevel": 1, "shuffle": True}
+        return plain
+    return plain | {"zlib": True, "complevel": 1, "shuffle": True}
 
 
 def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
     if group is None and is_store(path):
         return _read_folder(path, kind)
     content = _read_bytes(path, kind)
-    found = condition(content)
-    if found is Condition.DAMAGED:
+    state = condition(content)
+    if state is Condition.DAMAGED:
         raise damaged(path, kind)
     try:
         with h5py.File(BytesIO(content), "r") as root:
@@ -205,9 +239,9 @@ def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
     except InputError:
         raise
     except Exception as error:
-        # The HDF5 stack has no common exception for broken files: nearly any may come.
+        # The HDF5 stack has no common exception for broken files and may raise almost any.
         raise damaged(path, kind) from error
-    if found is Condition.UNCHECKED and group is None:
+    if state is Condition.UNCHECKED and group is None:
         refuse_broken_attributes(path, kind, dataset)
         warn_unchecked(path)
     return dataset
@@ -215,7 +249,7 @@ def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
 
 def _read_folder(path: Path, kind: Kind) -> xr.Dataset:
     """Return a result that other software has stored again as Zarr."""
-    # Zarr is slow to be imported, and hardly any result needs it.
+    # The import of Zarr is slow, and few results need it.
     from undula.storage.zarr_copy import read_copy
 
     metadata = read_metadata(path)
@@ -224,7 +258,7 @@ def _read_folder(path: Path, kind: Kind) -> xr.Dataset:
 
 
 def _without_fill(dataset: xr.Dataset) -> xr.Dataset:
-    """Return a dataset without the fill values that xarray adds, and would not store again."""
+    """Return a dataset without fill values, which xarray adds and refuses to store again."""
     for variable in dataset.variables.values():
         variable.attrs.pop("_FillValue", None)
     return dataset

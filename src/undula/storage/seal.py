@@ -1,8 +1,8 @@
-"""The line behind a result file by which damage is told before any library reads a byte.
+"""The seal of a result file: a last line with a checksum, verified before any library reads it.
 
-It holds a checksum of all that is before it. HDF5 ends where its superblock says and cuts off the
-rest when it writes: other programs open such a file as if the line were not there, and a file that
-one of them has changed carries none.
+The line holds a checksum of all bytes before it. HDF5 ends where its superblock states and removes
+the rest when it writes. Other programs therefore open a sealed file without noticing the line, and
+a file that one of them has changed is not sealed any more.
 """
 
 import hashlib
@@ -12,13 +12,14 @@ from undula.storage.trial_reading import is_readable
 
 _WORD = b"\nundula sha256 "
 _LENGTH = len(_WORD) + hashlib.sha256().digest_size * 2 + 1
-#: Where the superblock of HDF5 holds the end of the file, by its version.
-_END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
-_VERSION_AT, _END_BYTES = 8, 8
+#: Offset of the end of the file in the superblock of HDF5, by its version [bytes].
+_END_OFFSETS = {0: 40, 1: 44, 2: 28, 3: 28}
+#: Offset of the version in the superblock, and length of the end of the file [bytes].
+_VERSION_OFFSET, _END_LENGTH = 8, 8
 
 
 class Condition(Enum):
-    """What is known of the bytes of a result file."""
+    """Result of the check of a result file."""
 
     WHOLE = "as they were written"
     DAMAGED = "not as they were written"
@@ -26,14 +27,14 @@ class Condition(Enum):
 
 
 def sealed(content: bytes) -> bytes:
-    """Return the bytes of a file with the line behind them."""
+    """Return the bytes of a file with the seal appended."""
     return content + _line(content)
 
 
 def condition(image: bytes) -> Condition:
-    """Hold the bytes of an HDF5 file against the line behind them.
+    """Check the bytes of an HDF5 file against its seal.
 
-    Without a line they are readable if they end where HDF5 does and a reading on trial succeeds.
+    A file without a seal is readable if it ends where HDF5 states and a trial reading succeeds.
     """
     if is_whole(image):
         return Condition.WHOLE
@@ -43,7 +44,7 @@ def condition(image: bytes) -> Condition:
 
 
 def is_whole(image: bytes) -> bool:
-    """Tell whether the bytes of a file carry a line, and are those that it was made for."""
+    """Return True if the bytes of a file end with their own seal."""
     return image[-_LENGTH:] == _line(image[:-_LENGTH])
 
 
@@ -52,6 +53,6 @@ def _line(content: bytes) -> bytes:
 
 
 def _end(image: bytes) -> int:
-    """Return where HDF5 says that its file ends, -1 if it does not say."""
-    at = _END_AT.get(image[_VERSION_AT] if len(image) > _VERSION_AT else -1)
-    return -1 if at is None else int.from_bytes(image[at : at + _END_BYTES], "little")
+    """Return the length of the file according to its superblock, -1 if it states none."""
+    offset = _END_OFFSETS.get(image[_VERSION_OFFSET] if len(image) > _VERSION_OFFSET else -1)
+    return -1 if offset is None else int.from_bytes(image[offset : offset + _END_LENGTH], "little")

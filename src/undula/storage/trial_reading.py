@@ -1,7 +1,7 @@
-"""A reading on trial, in a process of its own, of HDF5 files that carry no checksum.
+"""Trial reading, in a separate process, of HDF5 files without a checksum.
 
-Zeros or flipped bits at the wrong place send HDF5 into an endless loop, make it ask for all memory
-or end the process. A process of its own can be ended and can die.
+Zeros or flipped bits at some places send HDF5 into an endless loop, make it allocate all memory or
+end the process. A separate process may be ended or die without harm.
 """
 
 import hashlib
@@ -12,42 +12,42 @@ from functools import cache
 from io import BytesIO
 from typing import Any
 
-#: Seconds of the processor that the reading may take, and further ones for each byte.
+#: Processor time that the reading may take [s], and further time for each byte [s].
 _SECONDS, _SECONDS_A_BYTE = 5, 1e-7
-#: The clock may run so many times as long, on a machine with much else to do.
+#: Longest wall time over processor time, on a busy machine.
 _PATIENCE = 10
-#: No compression of HDF5 makes zeros shorter than by this factor; slack for files of few bytes.
-_MOST_COMPRESSED, _SLACK = 1100, 2**20
+#: Bound on the compression of zeros by HDF5, and allowance for small files [bytes].
+_MOST_COMPRESSED, _ALLOWANCE = 1100, 2**20
 
 
 def is_readable(image: bytes) -> bool:
-    """Tell whether HDF5 reads everything in a file, in bounded time and memory."""
+    """Return True if HDF5 reads all content of a file in bounded time and memory."""
     digest = hashlib.sha256(image).digest()
-    if digest not in _known():
-        _known()[digest] = _tried(image)
-    return _known()[digest]
+    if digest not in _results():
+        _results()[digest] = _succeeds(image)
+    return _results()[digest]
 
 
 @cache
-def _known() -> dict[bytes, bool]:
-    """Return what is known already, by digest: a file is read several times by some commands."""
+def _results() -> dict[bytes, bool]:
+    """Return earlier results by digest, since some commands read a file several times."""
     return {}
 
 
-def _tried(image: bytes) -> bool:
+def _succeeds(image: bytes) -> bool:
     limit = _SECONDS + int(len(image) * _SECONDS_A_BYTE)
-    # Nothing is imported from the working folder, whose files may be anybody's.
+    # With -P nothing is imported from the working folder, whose files may not be trusted.
     command = [sys.executable, "-P", "-m", __name__, str(limit)]
-    # The other process finds the same packages, wherever this one has them from.
-    found = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": found}
+    # The process finds the same packages as this one.
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
     try:
-        tried = subprocess.run(
+        completed = subprocess.run(
             command, input=image, timeout=limit * _PATIENCE, check=False, **quiet
         )
     except subprocess.TimeoutExpired:
         return False
-    return tried.returncode == 0
+    return completed.returncode == 0
 
 
 def _read_all(image: bytes) -> None:
@@ -56,22 +56,22 @@ def _read_all(image: bytes) -> None:
     Raises
     ------
     MemoryError
-        It claims to hold more than can be in so few bytes.
+        The file claims to hold more than its bytes can.
     Exception
-        It cannot be read: of the HDF5 stack nearly any may come.
+        The file cannot be read; the HDF5 stack may raise almost any exception.
     """
     import h5py
 
-    most = len(image) * _MOST_COMPRESSED + _SLACK
+    most = len(image) * _MOST_COMPRESSED + _ALLOWANCE
 
-    def read(_: str, found: Any) -> None:
+    def read(_: str, node: Any) -> None:
         nonlocal most
-        dict(found.attrs)
-        if isinstance(found, h5py.Dataset):
-            most -= found.nbytes
+        dict(node.attrs)
+        if isinstance(node, h5py.Dataset):
+            most -= node.nbytes
             if most < 0:
                 raise MemoryError
-            found[()]
+            node[()]
 
     with h5py.File(BytesIO(image), "r") as root:
         dict(root.attrs)

@@ -1,15 +1,22 @@
-"""What is said of stored results that are not known to be whole."""
+"""Warnings on stored results that carry no checksum or are damaged."""
 
 import warnings
 from pathlib import Path
 
 
 class StoredWarning(UserWarning):
-    """A stored result is read that carries no checksum, or of which some parts are damaged."""
+    """Warning on a stored result that carries no checksum, or that is damaged in part.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import undula
+    >>> warnings.simplefilter("error", undula.StoredWarning)  # doctest: +SKIP
+    """
 
 
 def warn_unchecked(path: Path) -> None:
-    """Say of a file or a store that damage would not be seen."""
+    """Warn that damage of a file or a store would not be detected."""
     _warn(
         f"{path} carries no checksum, since other software or an earlier version stored it: it is"
         " taken as it is, and damage would not be seen"
@@ -17,12 +24,20 @@ def warn_unchecked(path: Path) -> None:
 
 
 def warn_damaged(path: Path, points: int) -> None:
-    """Say of a store that some of its points are damaged."""
+    """Warn that points of a store are damaged.
+
+    Parameters
+    ----------
+    path
+        The store.
+    points
+        Number of damaged points.
+    """
     _warn(
         f"{path} is damaged: {points} of its points count as not done; undula sweep does them again"
     )
 
 
 def _warn(sentence: str) -> None:
-    # As of the line that called a reader of studies, which calls these functions.
+    # The level of the line that called a reader of sweeps, such as `undula.load_sweep`.
     warnings.warn(sentence, StoredWarning, stacklevel=5)

@@ -1,4 +1,4 @@
-"""Stored results that other software has stored again as Zarr, read at once as they are."""
+"""Reader of results that other software has stored again as Zarr."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -12,27 +12,27 @@ from undula.storage.zarr_metadata import Metadata
 
 
 def read_copy(path: Path, metadata: Metadata, without: Iterable[str] = ()) -> xr.Dataset:
-    """Return what a store without checksums holds, with a warning that it carries none.
+    """Read a store without checksums at once, and warn that it carries none.
 
     Parameters
     ----------
     path
-        Its folder.
+        Folder of the store.
     metadata
-        As `read_metadata` gives them.
+        Its metadata, as `read_metadata` returns them.
     without
         Names of variables that are not read.
 
     Raises
     ------
     InputError
-        It cannot be read.
+        The store cannot be read.
     """
     try:
         stored = opened(SoundStore.of(path, metadata.files, read_only=True), metadata)
         stored = stored.drop_vars(without, errors="ignore").load()
     except Exception as error:
-        # Codecs and Zarr have no common exception for what is broken: nearly any may come.
+        # Codecs and Zarr have no common exception for damage and may raise almost any.
         raise InputError(
             f"{path} is damaged and carries no checksums to tell where; take it from a copy, or"
             " make it again"
@@ -42,11 +42,19 @@ def read_copy(path: Path, metadata: Metadata, without: Iterable[str] = ()) -> xr
 
 
 def opened(store: SoundStore, metadata: Metadata) -> xr.Dataset:
-    """Return what a store holds, read when it is asked for."""
-    found: xr.Dataset = xr.open_zarr(
+    """Return the content of a store as a lazily read dataset.
+
+    Parameters
+    ----------
+    store
+        The store.
+    metadata
+        Its metadata.
+    """
+    dataset: xr.Dataset = xr.open_zarr(
         store,
         zarr_format=metadata.format,
         chunks=None,
         consolidated=metadata.format == 2 or None,
     )
-    return found
+    return dataset

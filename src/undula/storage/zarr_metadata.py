@@ -1,8 +1,8 @@
-"""What a store says of itself, held against its digest and read before Zarr sees any of it.
+"""Metadata of a store, checked against their digest before Zarr reads them.
 
-Zarr looks up codecs by the names that a store gives, and some run code: only those that undula and
-xarray write are let through. The second format of Zarr keeps the metadata twice, in one file and in
-one of each array, and either will do.
+Zarr looks up codecs by the names in the metadata, and some codecs run code: only those that undula
+and xarray write are allowed. The second format of Zarr stores the metadata twice, in one common
+file and in a file of each array; one valid copy is enough.
 """
 
 import json
@@ -16,9 +16,9 @@ from undula.errors import InputError
 from undula.storage.atomic import write_whole
 from undula.storage.digests import digest_of
 
-#: The attribute of the root that holds the digest, and the names of the arrays that it is of.
+#: Attributes of the root that hold the digest, and the names of the arrays that it covers.
 DIGEST, ARRAYS = "undula_digest", "undula_arrays"
-#: The attributes of the root that the digest is of: others may be added.
+#: Attributes of the root that the digest covers; others may be added.
 ATTRIBUTES = ("study", "versions", "software", "units", "load", "undula_format")
 _GROUP, _ATTRIBUTES, _ARRAY, _ALL = ".zgroup", ".zattrs", ".zarray", ".zmetadata"
 _THIRD = "zarr.json"
@@ -38,11 +38,11 @@ class Metadata:
     Attributes
     ----------
     content
-        By the names of their files, as JSON.
+        Parsed JSON by the names of the files.
     format
-        Of Zarr.
+        Format of Zarr, 2 or 3.
     checked
-        Whether the content is known to be what undula wrote.
+        True if the digest shows that undula wrote the content.
     """
 
     content: Content
@@ -51,8 +51,8 @@ class Metadata:
 
     @property
     def files(self) -> dict[str, bytes]:
-        """The files that say the same."""
-        files = {name: json.dumps(told, indent=2).encode() for name, told in self.content.items()}
+        """Bytes of the metadata files, by name."""
+        files = {name: json.dumps(part, indent=2).encode() for name, part in self.content.items()}
         if self.format == 2:
             together = {"metadata": self.content, "zarr_consolidated_format": 1}
             files[_ALL] = json.dumps(together, indent=2).encode()
@@ -66,26 +66,26 @@ class Metadata:
         return self.content.get(_ATTRIBUTES, {})  # type: ignore[no-any-return]
 
     def array(self, name: str) -> Mapping[str, Any]:
-        """Return what is said of an array of the second format."""
+        """Return the metadata of an array; for the second format of Zarr."""
         return self.content[f"{name}/{_ARRAY}"]  # type: ignore[no-any-return]
 
     def dims(self, name: str) -> tuple[str, ...]:
-        """Return the names of the dimensions of an array of the second format."""
+        """Return the dimensions of an array by name; for the second format of Zarr."""
         return tuple(self.content[f"{name}/{_ATTRIBUTES}"]["_ARRAY_DIMENSIONS"])
 
 
 def is_metadata(key: str) -> bool:
-    """Tell whether a file of a store holds metadata, by its name."""
+    """Return True if a file of a store holds metadata, judging by its name."""
     return key.rsplit("/", 1)[-1] in _NAMES
 
 
 def is_store(path: Path) -> bool:
-    """Tell whether there is a store in a place, whatever it holds."""
+    """Return True if a folder is a store of any content."""
     return any((path / name).is_file() for name in (_GROUP, _ALL, _THIRD))
 
 
 def seal_of(content: Content) -> dict[str, Any]:
-    """Return the attributes of the root that seal the metadata of a new store."""
+    """Return the names and the digest to be added to the root attributes of a new store."""
     names = sorted(key.removesuffix(f"/{_ARRAY}") for key in content if key.endswith(_ARRAY))
     return {ARRAYS: names, DIGEST: _digest(content, names)}
 
@@ -96,7 +96,8 @@ def read_metadata(path: Path) -> Metadata:
     Raises
     ------
     InputError
-        They are damaged, or name what undula does not write, or this is no store.
+        The metadata are damaged or name a type or codec that undula does not write, or the folder
+        is not a store.
     """
     if (path / _THIRD).exists():
         return _checked_codecs(path, Metadata(_third(path), 3, checked=False))
@@ -113,7 +114,14 @@ def read_metadata(path: Path) -> Metadata:
 
 
 def mend_metadata(path: Path, metadata: Metadata) -> None:
-    """Write anew whichever of the two copies of a store's metadata is damaged.
+    """Write a damaged copy of a store's metadata again from the valid one.
+
+    Parameters
+    ----------
+    path
+        Folder of the store.
+    metadata
+        Its metadata, from a valid copy.
 
     Raises
     ------
@@ -127,16 +135,16 @@ def mend_metadata(path: Path, metadata: Metadata) -> None:
 
 
 def single_files(path: Path) -> dict[str, Any]:
-    """Return the metadata that are in one file of each array, as far as they can be read."""
+    """Return the metadata in the files of single arrays, as far as they can be read."""
     places = (path, *(place for place in sorted(path.glob("*")) if (place / _ARRAY).exists()))
     files = [place / name for place in places for name in (_GROUP, _ATTRIBUTES, _ARRAY)]
     read = {file.relative_to(path).as_posix(): _json(file) for file in files if file.is_file()}
-    return {key: told for key, told in read.items() if told is not None}
+    return {key: part for key, part in read.items() if part is not None}
 
 
 def _together(path: Path) -> dict[str, Any]:
-    told = _json(path / _ALL)
-    content = told.get("metadata") if told else None
+    whole = _json(path / _ALL)
+    content = whole.get("metadata") if whole else None
     return content if isinstance(content, dict) else {}
 
 
@@ -145,7 +153,7 @@ def _third(path: Path) -> dict[str, Any]:
     read = {file.relative_to(path).as_posix(): _json(file) for file in files}
     if read[_THIRD] is None:
         raise _no_store(path)
-    return {key: told for key, told in read.items() if told is not None}
+    return {key: part for key, part in read.items() if part is not None}
 
 
 def _no_store(path: Path) -> InputError:
@@ -154,14 +162,14 @@ def _no_store(path: Path) -> InputError:
 
 def _json(file: Path) -> dict[str, Any] | None:
     try:
-        told = json.loads(file.read_bytes())
+        content = json.loads(file.read_bytes())
     except (OSError, ValueError, RecursionError):
         return None
-    return told if isinstance(told, dict) else None
+    return content if isinstance(content, dict) else None
 
 
 def _is_group(content: Content) -> bool:
-    return _GROUP in content and all(isinstance(told, dict) for told in content.values())
+    return _GROUP in content and all(isinstance(part, dict) for part in content.values())
 
 
 def _is_sealed(content: Content) -> bool:
@@ -172,48 +180,48 @@ def _is_sealed(content: Content) -> bool:
 
 def _digest(content: Content, names: list[Any]) -> str:
     own = {name: content.get(_ATTRIBUTES, {}).get(name) for name in ATTRIBUTES}
-    arrays = [[content.get(f"{name}/{one}") for one in (_ARRAY, _ATTRIBUTES)] for name in names]
+    arrays = [[content.get(f"{name}/{file}") for file in (_ARRAY, _ATTRIBUTES)] for name in names]
     return digest_of([own, names, arrays])
 
 
 def _checked_codecs(path: Path, metadata: Metadata) -> Metadata:
-    for found in _strange(metadata):
+    for name in _foreign(metadata):
         raise InputError(
-            f"{path} asks for {found}, which undula does not write and does not run; give a folder"
+            f"{path} asks for {name}, which undula does not write and does not run; give a folder"
             " that undula sweep made"
         )
     return metadata
 
 
-def _strange(metadata: Metadata) -> Iterator[str]:
-    """Yield the types and codecs that are not let through."""
-    told = list(metadata.content.values())
+def _foreign(metadata: Metadata) -> Iterator[str]:
+    """Yield the types and codecs that are not allowed."""
+    nodes = list(metadata.content.values())
     if metadata.format == 3:
-        # Those of all arrays may stand in the file of the group as well.
-        inside = [one.get("consolidated_metadata") or {} for one in told]
-        told = [*told, *(each for one in inside for each in one.get("metadata", {}).values())]
-    for one in told:
-        if metadata.format == 2 and "dtype" in one:
-            codecs = [*(one.get("filters") or ()), *filter(None, [one.get("compressor")])]
-            yield from _not_in(_CODECS, "the codec", [_name(each, "id") for each in codecs])
-            if not _TYPES.fullmatch(str(one["dtype"])):
-                yield f"the type {one['dtype']!r}"
-        elif metadata.format == 3 and one.get("node_type") == "array":
+        # The file of the group may hold the metadata of all arrays as well.
+        groups = [node.get("consolidated_metadata") or {} for node in nodes]
+        nodes += [array for group in groups for array in group.get("metadata", {}).values()]
+    for node in nodes:
+        if metadata.format == 2 and "dtype" in node:
+            codecs = [*(node.get("filters") or ()), *filter(None, [node.get("compressor")])]
+            yield from _not_in(_CODECS, "the codec", [_name(codec, "id") for codec in codecs])
+            if not _TYPES.fullmatch(str(node["dtype"])):
+                yield f"the type {node['dtype']!r}"
+        elif metadata.format == 3 and node.get("node_type") == "array":
             yield from _not_in(
                 _CODECS_OF_THIRD,
                 "the codec",
                 [
-                    _name(each, "name")
-                    for part in ("codecs", "storage_transformers")
-                    for each in one.get(part) or ()
+                    _name(codec, "name")
+                    for key in ("codecs", "storage_transformers")
+                    for codec in node.get(key) or ()
                 ],
             )
-            yield from _not_in(_TYPES_OF_THIRD, "the type", [_name(one.get("data_type"), "name")])
+            yield from _not_in(_TYPES_OF_THIRD, "the type", [_name(node.get("data_type"), "name")])
 
 
-def _not_in(known: set[str], kind: str, names: list[str]) -> Iterator[str]:
-    yield from (f"{kind} {name!r}" for name in names if name not in known)
+def _not_in(allowed: set[str], kind: str, names: list[str]) -> Iterator[str]:
+    yield from (f"{kind} {name!r}" for name in names if name not in allowed)
 
 
-def _name(told: Any, key: str) -> str:
-    return str(told.get(key)) if isinstance(told, dict) else str(told)
+def _name(entry: Any, key: str) -> str:
+    return str(entry.get(key)) if isinstance(entry, dict) else str(entry)

@@ -1,7 +1,7 @@
-"""Solved borders kept beside a stored study, to be used again as long as they are of the same one.
+"""Cache of solved stability boundaries next to a stored sweep.
 
-They are one file of JSON, whole or not at all, that says what it is about and carries its digest.
-It is written anew with every column, so that what was solved for is never lost.
+The cache is one JSON file that is written whole, states what it belongs to and carries a digest.
+It is rewritten after every column, so that no solved column is lost.
 """
 
 import json
@@ -22,105 +22,142 @@ from undula.schema.sweep_axes import axes_of
 from undula.storage.atomic import write_whole
 from undula.storage.digests import sealed_json, unsealed_json
 from undula.sweeps.point import software
-from undula.sweeps.sweep import of_dump
+from undula.sweeps.sweep import sweep_from_dump
 
-#: The file in the folder of a store.
+#: Name of the file in the folder of a store.
 NAME = "borders.json"
 _CHANGES = ("fold", "gained", "lost")
+#: Keys of the file that differ from the names of the fields.
+_KEYS = {"searched_to": "known_to"}
 
-#: What is known of each kind of state at one value of the parameter.
+#: Stability intervals of each kind of state at one value of the parameter.
 Column = Mapping[str, StabilityIntervals]
 
 
 def tables_of(store: xr.Dataset) -> dict[str, Any]:
-    """Return the input of the first point of a stored study, or of what was chosen of it."""
-    study = of_dump(json.loads(store.attrs["study"]))
+    """Return the input of the first point of a stored sweep, or of a selection of its points."""
+    sweep = sweep_from_dump(json.loads(store.attrs["study"]))
     first = [
         int(np.argmax(np.array(axis.values) == store[axis.key].values.flat[0]))
-        for axis in study.axes
+        for axis in sweep.axes
     ]
-    number = int(np.ravel_multi_index([*first, 0], study.shape))
-    return study.tables(number)
+    number = int(np.ravel_multi_index([*first, 0], sweep.shape))
+    return sweep.tables(number)
 
 
-def columns_of(jobs: Sequence[Mapping[str, Any]]) -> list[Column]:
-    """Return columns of borders, solved for by a worker.
+def solve_columns(requests: Sequence[Mapping[str, Any]]) -> list[Column]:
+    """Solve for columns of stability boundaries; called in a worker.
 
-    Each job holds the `tables` of an input, and `parameter`, `value` and `up_to`.
+    Parameters
+    ----------
+    requests
+        One mapping for each column, with the ``tables`` of an input, and ``parameter``, ``value``
+        and ``up_to`` as for `intervals_at`.
     """
     columns: list[Column] = []
-    for job in jobs:
-        model = build_model(parse_input(job["tables"]))
-        columns.append(intervals_at(model, job["parameter"], job["value"], job["up_to"]))
+    for request in requests:
+        model = build_model(parse_input(request["tables"]))
+        columns.append(
+            intervals_at(model, request["parameter"], request["value"], request["up_to"])
+        )
     return columns
 
 
-def kept_columns(path: Path, store: xr.Dataset) -> list[Column | None]:
-    """Return the columns that are kept beside a study, None for those still to be solved for.
+def read_boundaries(path: Path, store: xr.Dataset) -> list[Column | None]:
+    """Return the cached columns of a sweep, None for each that is not solved yet.
 
-    There are none at all if what is kept is of something else, or damaged.
+    The list is empty if the cache belongs to something else, or is missing or damaged.
+
+    Parameters
+    ----------
+    path
+        Folder of the store.
+    store
+        The selected part of the sweep.
     """
     try:
-        kept = unsealed_json((path / NAME).read_bytes())
+        content = unsealed_json((path / NAME).read_bytes())
     except OSError:
         return []
-    if kept is None or kept["about"] != _about(store):
+    if content is None or content["about"] != _about(store):
         return []
-    return [column and _read(column) for column in kept["borders"]["columns"]]
+    return [column and _read(column) for column in content["borders"]["columns"]]
 
 
-def keep_borders(
+def write_boundaries(
     path: Path,
     store: xr.Dataset,
-    borders: StabilityBoundaries,
+    boundaries: StabilityBoundaries,
     columns: Sequence[Column | None] = (),
 ) -> None:
-    """Write borders beside a study, in place of any earlier ones.
+    """Write stability boundaries next to a sweep, in place of any earlier ones.
 
-    Where not all of them are there yet, `columns` are given apart, None for what is missing.
+    Parameters
+    ----------
+    path
+        Folder of the store.
+    store
+        The selected part of the sweep.
+    boundaries
+        The boundaries.
+    columns
+        While some columns are missing: all columns, None for each that is not solved yet.
 
     Raises
     ------
     InputError
         The folder cannot be written or is full.
     """
-    content = {"about": _about(store), "borders": told(borders, columns)}
+    content = {"about": _about(store), "borders": as_dict(boundaries, columns)}
     write_whole(path / NAME, sealed_json(content), overwrite=True)
 
 
-def told(borders: StabilityBoundaries, columns: Sequence[Column | None]) -> dict[str, Any]:
-    """Return borders in plain JSON types, null in place of what is not finite."""
+def as_dict(boundaries: StabilityBoundaries, columns: Sequence[Column | None]) -> dict[str, Any]:
+    """Return stability boundaries in plain JSON types, null in place of non-finite numbers.
+
+    Parameters
+    ----------
+    boundaries
+        The boundaries.
+    columns
+        All columns, None for each that is not solved yet; empty for those of `boundaries`.
+    """
     plain = {
-        "parameter": borders.parameter,
-        "values": list(borders.values),
-        "up_to": borders.up_to,
+        "parameter": boundaries.parameter,
+        "values": list(boundaries.values),
+        "up_to": boundaries.up_to,
         "columns": [
-            None if column is None else {kind: asdict(state) for kind, state in column.items()}
-            for column in columns or borders.columns
+            None if column is None else {kind: _stored(state) for kind, state in column.items()}
+            for column in columns or boundaries.columns
         ],
     }
     return _finite(plain)  # type: ignore[no-any-return]
 
 
 def _about(store: xr.Dataset) -> dict[str, Any]:
-    """Return all that borders follow from: the study, what was chosen of it, and the version."""
-    chosen = {name: store[name].values.tolist() for name in axes_of(store)}
-    return {"study": json.loads(store.attrs["study"]), "values": chosen, "undula": software()}
+    """Return all that boundaries follow from: the sweep, the selected values and the version."""
+    selected = {name: store[name].values.tolist() for name in axes_of(store)}
+    return {"study": json.loads(store.attrs["study"]), "values": selected, "undula": software()}
+
+
+def _stored(intervals: StabilityIntervals) -> dict[str, Any]:
+    """Return the stability intervals of a state under the keys of the file."""
+    return {_KEYS.get(name, name): value for name, value in asdict(intervals).items()}
 
 
 def _read(column: Mapping[str, Any]) -> Column:
-    return {kind: _stretches(state) for kind, state in column.items()}
+    return {kind: _intervals(state) for kind, state in column.items()}
 
 
-def _stretches(kept: Mapping[str, Any]) -> StabilityIntervals:
-    """Return what is known of a state; what is not finite in it is always infinite."""
-    changes = {name: kept[name] and Change(**kept[name]) for name in _CHANGES}
+def _intervals(stored: Mapping[str, Any]) -> StabilityIntervals:
+    """Return the stability intervals of a state; null numbers in them always mean infinity."""
+    changes = {name: stored[name] and Change(**stored[name]) for name in _CHANGES}
     return StabilityIntervals(
-        kept["kind"],
-        kept["begins"],
-        tuple((low, math.inf if high is None else high) for low, high in kept["stable"]),
-        math.inf if kept["known_to"] is None else kept["known_to"],
-        reason=kept["reason"],
+        stored["kind"],
+        stored["begins"],
+        tuple((low, math.inf if high is None else high) for low, high in stored["stable"]),
+        math.inf if stored["known_to"] is None else stored["known_to"],
+        reason=stored["reason"],
         **changes,
     )
 

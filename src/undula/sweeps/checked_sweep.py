@@ -1,7 +1,7 @@
-"""A stored study as a dataset in which every number is as it was written.
+"""Stored sweeps as datasets that contain only undamaged numbers.
 
-A block of points of which a chunk is damaged or missing is shown as not done. Only what is asked
-for is looked at: shapes are nearly all of a large store.
+Points of a chunk with a damaged or missing file are shown as not done. Only the requested variables
+are checked: shapes are nearly all of a large store.
 """
 
 import json
@@ -17,68 +17,68 @@ from undula.storage.checked_zarr import SoundStore
 from undula.storage.unchecked import warn_damaged
 from undula.storage.zarr_copy import opened, read_copy
 from undula.storage.zarr_metadata import ARRAYS, DIGEST, Metadata
-from undula.sweeps.chunks import Chunks
-from undula.sweeps.layout import known_arrays
-from undula.sweeps.sweep import of_dump
+from undula.sweeps.chunk_files import ChunkFiles
+from undula.sweeps.layout import derived_arrays
+from undula.sweeps.sweep import sweep_from_dump
 
 
 def sound_dataset(path: Path, metadata: Metadata, *, shapes: bool) -> xr.Dataset:
-    """Return what is whole of a study, read when it is asked for.
+    """Return the undamaged part of a stored sweep as a lazily read dataset.
 
-    A study that carries no checksums is read at once.
+    A sweep without checksums is read at once.
 
     Parameters
     ----------
     path
-        Its folder.
+        Folder of the store.
     metadata
-        As `read_metadata` gives them.
+        Its metadata, as `read_metadata` returns them.
     shapes
-        Whether the shapes of last periods are among the variables.
+        If true, the variables include the shapes of last periods.
 
     Raises
     ------
     InputError
-        A study without checksums cannot be read.
+        A sweep without checksums cannot be read.
     """
     without = () if shapes else tuple(INNER)
     read = _sound if metadata.checked else read_copy
     stored = read(path, metadata, without)
     seal = (ARRAYS, DIGEST)
-    kept = {name: told for name, told in stored.attrs.items() if name not in seal}
-    # Encodings of this store would be in the way of storing it again.
-    return _with_attributes(stored.drop_encoding(), kept)
+    attributes = {name: value for name, value in stored.attrs.items() if name not in seal}
+    # With the encodings of this store, xarray could not store the dataset again.
+    return _with_attributes(stored.drop_encoding(), attributes)
 
 
 def _sound(path: Path, metadata: Metadata, without: Iterable[str]) -> xr.Dataset:
-    chunks = Chunks.of(path, metadata)
+    files = ChunkFiles.of(path, metadata)
     store = SoundStore.of(path, metadata.files, read_only=True)
-    known, undone = chunks.damaged_known(), chunks.without_status()
-    store.hidden |= {chunks.key(name) for name in known}
-    store.hidden |= {chunks.key(STATUS.name, block) for block in undone}
+    damaged, not_done = files.damaged_derived(), files.with_damaged_status()
+    store.hidden |= {files.key(name) for name in damaged}
+    store.hidden |= {files.key(STATUS.name, chunk) for chunk in not_done}
     stored = opened(store, metadata).drop_vars(without, errors="ignore")
-    # A block's status is written last: what is looked at after it is there.
+    # A chunk's status is written last: variables that are checked after it exist.
     statuses = np.array(stored[STATUS.name].values)
-    names = [name for name in chunks.names if name in stored]
-    points = sum(len(chunks.blocks.numbers(block)) for block in undone)
-    for block in chunks.damaged(statuses.ravel(), names):
-        region = chunks.blocks.region(block)
+    names = [name for name in files.names if name in stored]
+    points = sum(len(files.grid.numbers(chunk)) for chunk in not_done)
+    for chunk in files.damaged(statuses.ravel(), names):
+        region = files.grid.region(chunk)
         points += int((statuses[region] != STATUS.rest).sum())
         statuses[region] = STATUS.rest
-        undone.append(block)
-    store.hidden |= {chunks.key(name, block) for name in names for block in undone}
+        not_done.append(chunk)
+    store.hidden |= {files.key(name, chunk) for name in names for chunk in not_done}
     if points:
         warn_damaged(path, points)
     stored[STATUS.name] = stored[STATUS.name].copy(data=statuses)
-    return _replaced(stored, known)
+    return _with_derived(stored, damaged)
 
 
-def _replaced(stored: xr.Dataset, known: list[str]) -> xr.Dataset:
-    """Return a study with those of its arrays made anew that follow from it."""
-    if known:
-        made = known_arrays(of_dump(json.loads(stored.attrs["study"])))
-        for name in known:
-            stored[name] = (stored[name].dims, made[name], stored[name].attrs)
+def _with_derived(stored: xr.Dataset, names: list[str]) -> xr.Dataset:
+    """Return a sweep with the named arrays computed again from its definition."""
+    if names:
+        derived = derived_arrays(sweep_from_dump(json.loads(stored.attrs["study"])))
+        for name in names:
+            stored[name] = (stored[name].dims, derived[name], stored[name].attrs)
     return stored
 
 

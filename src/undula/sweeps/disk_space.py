@@ -1,4 +1,4 @@
-"""What a stored study takes of a disk, told before it begins."""
+"""Estimate of the disk space that a stored sweep needs, checked before the sweep begins."""
 
 import shutil
 from pathlib import Path
@@ -11,50 +11,58 @@ from undula.errors import InputError
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
 from undula.schema.sweep_variables import columns_of
-from undula.sweeps.sweep import Study
+from undula.sweeps.sweep import Sweep
 
-#: Part of their size to which numbers of a motion shrink at best when they are compressed.
-PACKED = 0.5
+#: Compressed over original size of the numbers of a motion, at best.
+BEST_COMPRESSION = 0.5
 
 
-def refuse_too_large_a_store(path: Path, study: Study) -> None:
-    """Refuse a study whose results cannot fit on the disk.
+def refuse_too_large_a_store(path: Path, sweep: Sweep) -> None:
+    """Refuse a sweep whose results cannot fit on the disk.
+
+    Parameters
+    ----------
+    path
+        Folder of the store, which need not exist.
+    sweep
+        The sweep.
 
     Raises
     ------
     InputError
-        They would take more than is free.
+        They need more than the free space.
     """
-    needed, free = needed_room(study), _free(path)
+    needed, free = needed_room(sweep), _free(path)
     if free is not None and needed > free:
-        cure = "study.keep = 'verdict' or " if study.keep != "verdict" else ""
+        cure = "study.keep = 'verdict' or " if sweep.keep != "verdict" else ""
         raise InputError(
-            f"{study.count} points with study.keep = '{study.keep}' take {size_text(needed)} on the"
+            f"{sweep.count} points with study.keep = '{sweep.keep}' take {size_text(needed)} on the"
             f" disk, and {size_text(free)} are free at {path}; use {cure}fewer points"
         )
 
 
-def needed_room(study: Study) -> int:
-    """Return the bytes that a study takes on a disk at least."""
-    columns = columns_of(study.label, "verdict", study.undecided)
-    # Texts repeat themselves and shrink to little.
+def needed_room(sweep: Sweep) -> int:
+    """Return the least disk space that a sweep needs [bytes]."""
+    columns = columns_of(sweep.label, "verdict", sweep.undecided)
+    # Texts repeat themselves and compress to little.
     point = sum(np.dtype(column.dtype).itemsize for column in columns if column.dtype == "float64")
-    return int(PACKED * study.count * (point + 8 * _numbers_kept(study)))
+    return int(BEST_COMPRESSION * sweep.count * (point + 8 * _numbers_kept(sweep)))
 
 
-def _numbers_kept(study: Study) -> int:
-    """Return how many numbers of a motion are kept of each point."""
-    if study.keep == "verdict":
+def _numbers_kept(sweep: Sweep) -> int:
+    """Return how many numbers of a motion are stored for each point."""
+    if sweep.keep == "verdict":
         return 0
-    wanted = parse_input(study.tables(0))
+    wanted = parse_input(sweep.tables(0))
     nodes = 3 * (build_model(wanted).links + 1)
-    return wanted.time.samples * nodes if study.keep == "run" else SHAPES * nodes + 3 * INSTANTS
+    return wanted.time.samples * nodes if sweep.keep == "run" else SHAPES * nodes + 3 * INSTANTS
 
 
 def _free(path: Path) -> int | None:
-    """Return the bytes that are free where a store is to be, None where that is not known."""
-    there = next((one for one in (path.absolute(), *path.absolute().parents) if one.exists()), None)
+    """Return the free space at the place of a store [bytes], None where it is unknown."""
+    folders = (path.absolute(), *path.absolute().parents)
+    existing = next((folder for folder in folders if folder.exists()), None)
     try:
-        return None if there is None else shutil.disk_usage(there).free
+        return None if existing is None else shutil.disk_usage(existing).free
     except OSError:
         return None

@@ -1,4 +1,4 @@
-"""The layout of a stored study: which arrays there are, in what chunks, and what they say."""
+"""Layout of a stored sweep: its arrays, their chunks and their attributes."""
 
 import errno
 import json
@@ -17,15 +17,15 @@ from undula.analysis.runs.last_period import INSTANTS, SHAPES
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
 from undula.models.model import Model
-from undula.schema.sweep_axes import TRY
+from undula.schema.sweep_axes import REPLICATE
 from undula.schema.sweep_variables import INNER, SEED, STATUS, STATUS_WORDS, Column, columns_of
 from undula.storage.zarr_metadata import seal_of, single_files
-from undula.sweeps.blocks import chunk_shape
-from undula.sweeps.chunks import CHECKSUM
+from undula.sweeps.chunk_files import CHECKSUM
+from undula.sweeps.chunk_grid import chunk_shape
 from undula.sweeps.point import software
-from undula.sweeps.sweep import Study
+from undula.sweeps.sweep import Sweep
 
-#: What a store is, and the number of its format.
+#: Name and number of the format of a store.
 FORMAT = "study 1"
 #: Texts of fixed width belong to the second format of Zarr, not yet to the third.
 ZARR_FORMAT: Literal[2] = 2
@@ -35,10 +35,17 @@ RUNS = "runs"
 _LIBRARIES = ("undula", "numpy", "numba")
 
 
-def lay_out(path: Path, study: Study) -> None:
-    """Make the store of a study without any results, whole or not at all.
+def lay_out(path: Path, sweep: Sweep) -> None:
+    """Make the store of a sweep without any results, whole or not at all.
 
-    If another process was quicker, what it has made is left as it is.
+    If another process was quicker, the store that it has made stays.
+
+    Parameters
+    ----------
+    path
+        Folder of the store.
+    sweep
+        The sweep.
 
     Raises
     ------
@@ -47,7 +54,7 @@ def lay_out(path: Path, study: Study) -> None:
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        _fill(temporary, study)
+        _fill(temporary, sweep)
         os.rename(temporary, path)
     except OSError as error:
         if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
@@ -56,85 +63,86 @@ def lay_out(path: Path, study: Study) -> None:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
-def _fill(path: Path, study: Study) -> None:
-    wanted = parse_input(study.tables(0))
+def _fill(path: Path, sweep: Sweep) -> None:
+    wanted = parse_input(sweep.tables(0))
     model = build_model(wanted)
-    group = zarr.create_group(path, zarr_format=ZARR_FORMAT, attributes=_attributes(study))
-    _add_variables(group, study, model)
-    seeds = {"dims": _dims(study), "attributes": _told(SEED, model.units.names())}
-    for name, values in known_arrays(study).items():
-        told = seeds if name == SEED.name else {"dims": (name,)}
-        # Known from the beginning and never written again.
-        _add(group, name, values.dtype.str, values.shape, values.shape, **told)[...] = values
+    group = zarr.create_group(path, zarr_format=ZARR_FORMAT, attributes=_attributes(sweep))
+    _add_variables(group, sweep, model)
+    seeds = {"dims": _dims(sweep), "attributes": _attributes_of(SEED, model.units.names())}
+    for name, values in derived_arrays(sweep).items():
+        options = seeds if name == SEED.name else {"dims": (name,)}
+        # These follow from the sweep and are never written again.
+        _add(group, name, values.dtype.str, values.shape, values.shape, **options)[...] = values
     group.attrs.update(seal_of(single_files(path)))
     zarr.consolidate_metadata(path, zarr_format=ZARR_FORMAT)
 
 
-def known_arrays(study: Study) -> dict[str, np.ndarray[Any, Any]]:
-    """Return the arrays that follow from the study: its axes, and the seeds."""
-    seeds = np.array([study.seed(number) for number in range(study.count)], dtype=SEED.dtype)
-    return {**_coordinates(study), SEED.name: seeds.reshape(study.shape)}
+def derived_arrays(sweep: Sweep) -> dict[str, np.ndarray[Any, Any]]:
+    """Return the arrays that follow from the sweep: its axes, and the seeds."""
+    seeds = np.array([sweep.seed(number) for number in range(sweep.count)], dtype=SEED.dtype)
+    return {**_coordinates(sweep), SEED.name: seeds.reshape(sweep.shape)}
 
 
-def _attributes(study: Study) -> dict[str, str]:
-    wanted = parse_input(study.tables(0))
-    versions = {"python": platform.python_version()} | {one: version(one) for one in _LIBRARIES}
+def _attributes(sweep: Sweep) -> dict[str, str]:
+    wanted = parse_input(sweep.tables(0))
+    versions = {name: version(name) for name in _LIBRARIES}
+    versions = {"python": platform.python_version()} | versions
     return {
-        "study": json.dumps(study.dump()),
+        "study": json.dumps(sweep.dump()),
         "versions": json.dumps(versions),
         "software": software(),
         "units": json.dumps(build_model(wanted).units.names()),
-        "load": wanted.tell({axis.key for axis in study.axes}),
+        "load": wanted.describe({axis.key for axis in sweep.axes}),
         "undula_format": FORMAT,
     }
 
 
-def _coordinates(study: Study) -> dict[str, np.ndarray[Any, Any]]:
-    along = {axis.key: np.array(axis.values) for axis in study.axes}
-    along |= {TRY: np.arange(study.shape[-1])}
-    if study.keep == "period":
-        along |= {"axis": np.array(["x", "y", "z"])}
-    return along
+def _coordinates(sweep: Sweep) -> dict[str, np.ndarray[Any, Any]]:
+    coordinates = {axis.key: np.array(axis.values) for axis in sweep.axes}
+    coordinates |= {REPLICATE: np.arange(sweep.shape[-1])}
+    if sweep.keep == "period":
+        coordinates |= {"axis": np.array(["x", "y", "z"])}
+    return coordinates
 
 
-def _add_variables(group: zarr.Group, study: Study, model: Model) -> None:
-    dims = _dims(study)
+def _add_variables(group: zarr.Group, sweep: Sweep, model: Model) -> None:
+    dims = _dims(sweep)
     lengths = {"shape": SHAPES, "instant": INSTANTS, "node": model.links + 1, "axis": 3}
-    columns = columns_of(study.label, study.keep, study.undecided)
+    columns = columns_of(sweep.label, sweep.keep, sweep.undecided)
     largest = 8
-    if study.keep == "period":
+    if sweep.keep == "period":
         largest *= SHAPES * lengths["node"] * lengths["axis"]
-    chunks = chunk_shape(study.shape, point_bytes=largest, whole_lines=study.whole_lines)
+    chunk = chunk_shape(sweep.shape, point_bytes=largest, whole_rows=sweep.whole_rows)
     units = {**model.units.names(), "rate": "1/T"}
     for column in columns:
-        further = INNER.get(column.name, ())
-        inner = tuple(lengths[name] for name in further)
+        inner_dims = INNER.get(column.name, ())
+        inner = tuple(lengths[name] for name in inner_dims)
         _add(
             group,
             column.name,
             column.dtype,
-            (*study.shape, *inner),
-            (*chunks, *inner),
-            dims=(*dims, *further),
-            attributes=_told(column, units),
+            (*sweep.shape, *inner),
+            (*chunk, *inner),
+            dims=(*dims, *inner_dims),
+            attributes=_attributes_of(column, units),
         )
 
 
-def _dims(study: Study) -> tuple[str, ...]:
-    return (*(axis.key for axis in study.axes), TRY)
+def _dims(sweep: Sweep) -> tuple[str, ...]:
+    return (*(axis.key for axis in sweep.axes), REPLICATE)
 
 
-def _told(column: Column, units: dict[str, str]) -> dict[str, Any]:
+def _attributes_of(column: Column, units: dict[str, str]) -> dict[str, Any]:
     """Return the attributes of a variable."""
-    told: dict[str, Any] = {"long_name": column.meaning}
+    attributes: dict[str, Any] = {"long_name": column.meaning}
     if column.quantity:
-        told["units"] = units[column.quantity]
+        attributes["units"] = units[column.quantity]
     if column is STATUS:
-        told |= {
+        attributes |= {
             "flag_values": list(range(len(STATUS_WORDS))),
             "flag_meanings": " ".join(STATUS_WORDS),
         }
-    return told
+    return attributes
 
 
 def _add(
@@ -142,7 +150,7 @@ def _add(
     name: str,
     dtype: str,
     shape: tuple[int, ...],
-    chunks: tuple[int, ...],
+    chunk: tuple[int, ...],
     *,
     dims: tuple[str, ...],
     attributes: dict[str, Any] | None = None,
@@ -150,15 +158,15 @@ def _add(
     return group.create_array(
         name,
         shape=shape,
-        chunks=chunks,
+        chunks=chunk,
         dtype=dtype,
-        # As filters, for the checksum to be of the compressed bytes: none of them is looked at
-        # before it is known to be whole.
+        # As filters the checksum covers the compressed bytes, which are checked before any of
+        # them is decoded.
         filters=[get_numcodec({"id": "blosc"}), get_numcodec({"id": CHECKSUM})],
         compressors=None,
-        # What is missing is damage.
+        # Empty chunks are written too, so that a missing file always means damage.
         config={"write_empty_chunks": True},
-        # Of numbers and texts without one, 0 and the empty text are read where nothing is written.
+        # Without a fill value, unwritten numbers read as 0 and unwritten texts as empty.
         fill_value=np.nan if dtype == "float64" else None,
         attributes={"_ARRAY_DIMENSIONS": list(dims), **(attributes or {})},
     )

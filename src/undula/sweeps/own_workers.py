@@ -1,8 +1,8 @@
-"""Processes of our own that do pieces of a study: a Dask cluster that nobody else can enter.
+"""Own worker processes of a sweep: a Dask cluster that other accounts cannot enter.
 
-Whoever can talk to a scheduler or a worker can have it run any code. Any account of a machine can
-connect to its ports, so that ours ask for a key which is made anew each time and kept in memory.
-The dashboard, which tells and runs nothing, asks for a word in its address instead.
+A scheduler or a worker runs any code for its clients, and any account of a machine can connect to
+its ports. The processes here therefore require a key, which is new each time and kept in memory.
+The dashboard, which only displays and runs nothing, requires a secret word in its address instead.
 """
 
 import logging
@@ -25,56 +25,77 @@ from tornado.web import ErrorHandler
 from undula.errors import InputError
 from undula.interrupts import ENDINGS
 
-#: So many workers of our own may die under a piece before it is blamed. Others have their own rule.
+#: Number of workers that may die over a task before the task is blamed; other schedulers have
+#: their own limit.
 DEATHS = 10
-#: Dask has its workers give back memory as soon as they can, and arrays of a megabyte then cost
-#: more to allocate than to fill: judging a run takes three times as long (docs/notes/sweeps.md).
+#: Thresholds of memory allocation [bytes]. Dask makes its workers return memory at once, and
+#: arrays of a megabyte then cost more to allocate than to fill: classifying a run takes three times
+#: as long (docs/notes/sweeps.md).
 MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**26, "MALLOC_TRIM_THRESHOLD_": 2**29}
-#: Pieces that the scheduler remembers when they are done: it would keep a hundred.
+#: Finished tasks that the scheduler remembers, instead of a hundred by default.
 REMEMBERED = 4
-#: Bytes that a worker takes with all kernels and a run of usual length: 250 to 300 MB were seen.
-TAKES = 3e8
-#: Processes for each processor beyond which more of them only wait for one another.
-MOST = 8
-#: All listen on this machine only.
+#: Memory of a worker with all kernels and a run of usual length [bytes]; 250 to 300 MB measured.
+MEMORY_OF_WORKER = 3e8
+#: Most processes for each processor; more would only wait for one another.
+MOST_PER_PROCESSOR = 8
+#: Scheduler and workers listen on this machine only.
 _HERE = {"host": "127.0.0.1", "protocol": "tls://"}
-#: What Dask says of the deaths of workers is told by what becomes of their pieces.
+#: Loggers of Dask that report deaths of workers, which the results of their tasks show as well.
 _NOISY = ("distributed", "distributed.client", "asyncio", "tornado.application")
 
 
-def workers_that_fit(asked: int | None) -> int:
-    """Return the number of processes to be started, by default one for each processor.
+def workers_that_fit(wanted: int | None) -> int:
+    """Return the number of processes to be started.
+
+    Parameters
+    ----------
+    wanted
+        The number that the user asks for; None for one on each processor.
 
     Raises
     ------
     InputError
-        So many do not fit into the memory or on the processors.
+        The processes do not fit into the memory or on the processors.
     """
-    if asked is None:
-        return max(1, min(CPU_COUNT, int(MEMORY_LIMIT / TAKES)))
-    if asked > MOST * CPU_COUNT:
+    if wanted is None:
+        return max(1, min(CPU_COUNT, int(MEMORY_LIMIT / MEMORY_OF_WORKER)))
+    if wanted > MOST_PER_PROCESSOR * CPU_COUNT:
         raise InputError(
-            f"--workers {asked} would take {math.ceil(asked / MOST)} processors with {MOST}"
-            f" processes on each, and there {'is' if CPU_COUNT == 1 else 'are'} {CPU_COUNT}; give"
-            f" at most {MOST * CPU_COUNT}, best {CPU_COUNT}"
+            f"--workers {wanted} would take {math.ceil(wanted / MOST_PER_PROCESSOR)} processors"
+            f" with {MOST_PER_PROCESSOR} processes on each, and there"
+            f" {'is' if CPU_COUNT == 1 else 'are'} {CPU_COUNT}; give at most"
+            f" {MOST_PER_PROCESSOR * CPU_COUNT}, best {CPU_COUNT}"
         )
-    if asked > 1 and asked * TAKES > MEMORY_LIMIT:
+    if wanted > 1 and wanted * MEMORY_OF_WORKER > MEMORY_LIMIT:
         raise InputError(
-            f"--workers {asked} would take {asked * TAKES / 1e9:.1f} GB of memory, about"
-            f" {TAKES / 1e6:.0f} MB each, and there are {MEMORY_LIMIT / 1e9:.1f} GB; give at most"
-            f" {max(1, int(MEMORY_LIMIT / TAKES))}"
+            f"--workers {wanted} would take {wanted * MEMORY_OF_WORKER / 1e9:.1f} GB of memory,"
+            f" about {MEMORY_OF_WORKER / 1e6:.0f} MB each, and there are"
+            f" {MEMORY_LIMIT / 1e9:.1f} GB; give at most"
+            f" {max(1, int(MEMORY_LIMIT / MEMORY_OF_WORKER))}"
         )
-    return asked
+    return wanted
 
 
 @contextmanager
 def own_workers(count: int) -> Iterator[tuple[Client, Callable[[], None]]]:
-    """Yield a client of so many processes, which are still to come, and what starts lost ones anew.
+    """Start worker processes that end with the context.
+
+    Parameters
+    ----------
+    count
+        Number of processes.
+
+    Yields
+    ------
+    Client
+        Client of their scheduler; the processes may still be starting.
+    callable
+        Starts processes in place of lost ones.
 
     Raises
     ------
     InputError
-        There is no folder for temporary files.
+        No folder for temporary files can be written.
     """
     silence()
     word = secrets.token_urlsafe(24)
@@ -89,23 +110,23 @@ def own_workers(count: int) -> Iterator[tuple[Client, Callable[[], None]]]:
         with closing(cluster), closing(Client(cluster)) as client:
             cluster.scale(count)
             loop: Any = cluster.loop
-            yield client, lambda: loop.add_callback(_start_lost_ones, cluster)
+            yield client, lambda: loop.add_callback(_replace_lost, cluster)
 
 
 def silence() -> None:
-    """Keep what Dask has to say from standard error."""
+    """Keep messages of Dask from standard error."""
     for name in _NOISY:
         logging.getLogger(name).setLevel(logging.CRITICAL)
 
 
 @contextmanager
-def closing(thing: Any) -> Iterator[Any]:
-    """Yield something of Dask's that is closed at the end, which may well be gone by then."""
+def closing(resource: Any) -> Iterator[Any]:
+    """Yield a client or a cluster of Dask and close it at the end, ignoring errors of closing."""
     try:
-        yield thing
+        yield resource
     finally:
         with suppress(Exception):
-            thing.close()
+            resource.close()
 
 
 def _settings(word: str) -> dict[str, Any]:
@@ -114,10 +135,10 @@ def _settings(word: str) -> dict[str, Any]:
         "distributed.diagnostics.computations.max-history": REMEMBERED,
         "distributed.dashboard.link": f"{{scheme}}://{{host}}:{{port}}/{word}/status",
         "distributed.worker.http.routes": [],
-        # Its record of what has been at work grows for as long as a study takes.
+        # The profile of a worker grows for as long as a sweep runs.
         "distributed.worker.profile.enabled": False,
-        # A worker keeps nothing that could be put on disk, and one that pauses never goes on: it
-        # ends where memory ends, and another begins.
+        # A worker holds no data that could be spilled to disk, and a paused one would never
+        # continue: it ends when memory runs out, and another one starts.
         "distributed.worker.memory.target": False,
         "distributed.worker.memory.spill": False,
         "distributed.worker.memory.pause": False,
@@ -125,28 +146,28 @@ def _settings(word: str) -> dict[str, Any]:
 
 
 class _GuardedScheduler(Scheduler):
-    """A scheduler whose pages are found by whoever knows the word in their address."""
+    """A scheduler whose web pages require a secret word in their address."""
 
     def __init__(self, word: str, **options: Any) -> None:
         self._word = word
         super().__init__(http_prefix=f"/{word}", **options)
 
-    def start_http_server(self, *what: Any, **options: Any) -> None:
-        """Refuse every address without the word from the first request on."""
-        super().start_http_server(*what, **options)  # type: ignore[no-untyped-call]
+    def start_http_server(self, *arguments: Any, **options: Any) -> None:
+        """Start the web server; it refuses every address without the word."""
+        super().start_http_server(*arguments, **options)  # type: ignore[no-untyped-call]
         pages: Any = self.http_application
         find = pages.find_handler
 
-        def guarded(request: HTTPServerRequest, **how: Any) -> Any:
+        def guarded(request: HTTPServerRequest, **settings: Any) -> Any:
             if secrets.compare_digest(request.path.split("/")[1].encode(), self._word.encode()):
-                return find(request, **how)
+                return find(request, **settings)
             return pages.get_handler_delegate(request, ErrorHandler, {"status_code": 404})
 
         pages.find_handler = guarded
 
 
 def _cluster(count: int, word: str, private: str) -> SpecCluster:
-    """Return a scheduler without workers, whose workers will not hear what ends the driver."""
+    """Return a scheduler without workers, whose workers ignore signals that end the driver."""
     security = Security.temporary()
     scheduler = {"word": word, "security": security, "dashboard": True, **_HERE}
     worker = {
@@ -158,12 +179,12 @@ def _cluster(count: int, word: str, private: str) -> SpecCluster:
         "memory_limit": int(MEMORY_LIMIT / count),
         "local_directory": private,
     }
-    # The process that watches over shared memory outlives signals only if it is begun so.
+    # Started with blocked signals, the process that tracks shared memory survives them.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDINGS)
     multiprocessing.resource_tracker.ensure_running()
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     cluster = SpecCluster(
-        # Any port that is free.
+        # Port 0 stands for any free port.
         scheduler={
             "cls": _GuardedScheduler,
             "options": scheduler | {"dashboard_address": "127.0.0.1:0"},
@@ -172,18 +193,18 @@ def _cluster(count: int, word: str, private: str) -> SpecCluster:
         security=security,
         silence_logs=logging.CRITICAL,
     )
-    # Ctrl-C in a terminal, and what batch systems send, reach workers too; it is the driver that
-    # ends them in order. They inherit what the thread does not hear that starts them.
-    cluster.sync(_hear_no_endings)
+    # Ctrl-C in a terminal and signals of batch systems reach the workers too, but the driver ends
+    # them in order. They inherit the blocked signals of the thread that starts them.
+    cluster.sync(_block_endings)
     return cluster
 
 
-async def _hear_no_endings() -> None:
+async def _block_endings() -> None:
     signal.pthread_sigmask(signal.SIG_BLOCK, ENDINGS)
 
 
-def _start_lost_ones(cluster: SpecCluster) -> None:
-    """Start workers in place of those that are given up, in the thread of the cluster."""
+def _replace_lost(cluster: SpecCluster) -> None:
+    """Start workers in place of lost ones, in the thread of the cluster."""
     for name, nanny in list(cluster.workers.items()):
         if nanny.status in (Status.closed, Status.failed):
             del cluster.workers[name]

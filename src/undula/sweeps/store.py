@@ -1,9 +1,9 @@
-"""A study on disk: one Zarr group for all its points, written block by block.
+"""Stored sweeps: one Zarr group for all points, written chunk by chunk.
 
-A block is one chunk of every variable, so that writing it touches files of its own only. The file
-with the status of its points is written last, and each file takes its place in one step: a point
-that is said to be done, is, whenever the writing was cut short. Every file carries a checksum, and
-points of which one is damaged or missing are done again.
+Each chunk of points has its own files, one for each variable. The file with the status is written
+last, and each file replaces an earlier one in one step: whenever the writing is cut short, points
+marked as done have all their results. Every file carries a checksum, and points with a damaged or
+missing file are computed again.
 """
 
 import json
@@ -19,7 +19,7 @@ import zarr
 from undula.errors import InputError
 from undula.schema.sweep_axes import DONE
 from undula.schema.sweep_variables import STATUS, columns_of
-from undula.storage.atomic import folder_trouble_told, write_whole
+from undula.storage.atomic import folder_errors_explained, write_whole
 from undula.storage.checked_zarr import SoundStore
 from undula.storage.differences import difference
 from undula.storage.name_lock import locked
@@ -27,72 +27,74 @@ from undula.storage.result_kinds import Kind
 from undula.storage.run_file import read_result
 from undula.storage.seal import is_whole
 from undula.storage.zarr_metadata import Metadata, mend_metadata, read_metadata
-from undula.sweeps.blocks import Blocks
 from undula.sweeps.checked_sweep import sound_dataset
-from undula.sweeps.chunks import Chunks
+from undula.sweeps.chunk_files import ChunkFiles
+from undula.sweeps.chunk_grid import ChunkGrid
 from undula.sweeps.disk_space import refuse_too_large_a_store
-from undula.sweeps.layout import FORMAT, RUNS, ZARR_FORMAT, known_arrays, lay_out
+from undula.sweeps.layout import FORMAT, RUNS, ZARR_FORMAT, derived_arrays, lay_out
 from undula.sweeps.point import software
-from undula.sweeps.sweep import Study
+from undula.sweeps.sweep import Sweep
 
 Record = Mapping[str, Any]
 Arrays = dict[str, np.ndarray[Any, Any]]
 
 
-class StudyStore:
-    """The store of a study, to be written by one process.
+class SweepStore:
+    """The store of a sweep, to be written by one process.
 
     Parameters
     ----------
     path
-        Its folder, as `open_study` has found or made it.
-    study
-        What it holds.
+        Folder of the store, which exists.
+    sweep
+        The sweep that it holds.
     """
 
-    def __init__(self, path: Path, study: Study) -> None:
-        self.path, self.study, self._metadata = path, study, read_metadata(path)
+    def __init__(self, path: Path, sweep: Sweep) -> None:
+        self.path, self.sweep, self._metadata = path, sweep, read_metadata(path)
         store = SoundStore.of(path, self._metadata.files, read_only=False)
-        self._columns = columns_of(study.label, study.keep, study.undecided)
-        # A chunk is written even if all in it is empty: what is missing is damage.
+        self._columns = columns_of(sweep.label, sweep.keep, sweep.undecided)
+        # Empty chunks are written too, so that a missing file always means damage.
         with zarr.config.set({"array.write_empty_chunks": True}):
             self._group: Any = zarr.open_group(store, mode="r+", zarr_format=ZARR_FORMAT)
             self._arrays: dict[str, Any] = {
-                one.name: self._group[one.name] for one in self._columns
+                column.name: self._group[column.name] for column in self._columns
             }
-        self.blocks = Blocks(study.shape, self._arrays[STATUS.name].chunks)
+        self.grid = ChunkGrid(sweep.shape, self._arrays[STATUS.name].chunks)
 
     def statuses(self) -> np.ndarray[Any, Any]:
         """Return the status of every point, shape (count,)."""
         return np.asarray(self._arrays[STATUS.name][...]).ravel()
 
-    def read(self, block: int) -> Arrays:
-        """Return what the store holds of a block, by variable."""
-        region = self.blocks.region(block)
+    def read(self, chunk: int) -> Arrays:
+        """Return the stored content of a chunk, by variable."""
+        region = self.grid.region(chunk)
         return {name: np.array(array[region]) for name, array in self._arrays.items()}
 
-    def blank(self, block: int) -> Arrays:
-        """Return what the store holds of a block of which nothing has been written."""
-        region = self.blocks.region(block)
+    def blank(self, chunk: int) -> Arrays:
+        """Return the content of a chunk that has never been written, by variable."""
+        region = self.grid.region(chunk)
         inside = tuple(part.stop - part.start for part in region)
         return {
-            one.name: np.full(
-                (*inside, *self._arrays[one.name].shape[len(inside) :]), one.rest, one.dtype
+            column.name: np.full(
+                (*inside, *self._arrays[column.name].shape[len(inside) :]),
+                column.rest,
+                column.dtype,
             )
-            for one in self._columns
+            for column in self._columns
         }
 
-    def write(self, block: int, arrays: Arrays) -> None:
-        """Write what is known of a block, its status last.
+    def write(self, chunk: int, arrays: Arrays) -> None:
+        """Write the results of a chunk, the status last.
 
         Raises
         ------
         InputError
-            The folder cannot be written or is full. What was there before is still there, and
-            holds.
+            The folder cannot be written or is full. The earlier content of the chunk is then
+            still valid.
         """
-        region = self.blocks.region(block)
-        with folder_trouble_told(self.path):
+        region = self.grid.region(chunk)
+        with folder_errors_explained(self.path):
             for name, array in arrays.items():
                 if name != STATUS.name:
                     self._arrays[name][region] = array
@@ -100,20 +102,20 @@ class StudyStore:
 
     def forget(self, numbers: Sequence[int]) -> None:
         """Mark points as not done."""
-        for block in range(len(self.blocks)):
-            inside = self.blocks.numbers(block)
+        for chunk in range(len(self.grid)):
+            inside = self.grid.numbers(chunk)
             local = [number - inside.start for number in numbers if number in inside]
             if local:
-                region = self.blocks.region(block)
+                region = self.grid.region(chunk)
                 status = np.array(self._arrays[STATUS.name][region])
                 status.reshape(-1)[local] = STATUS.rest
-                with folder_trouble_told(self.path):
+                with folder_errors_explained(self.path):
                     self._arrays[STATUS.name][region] = status
 
     def mend(self) -> int:
-        """Mark points as not done of which something is damaged; return how many there were.
+        """Mark damaged points as not done; return their number.
 
-        What follows from the study is written anew.
+        Arrays that follow from the sweep are written again.
 
         Raises
         ------
@@ -121,33 +123,48 @@ class StudyStore:
             The folder cannot be written or is full.
         """
         mend_metadata(self.path, self._metadata)
-        chunks = Chunks.of(self.path, self._metadata)
-        lost = chunks.without_status()
-        self._remove(chunks, [(STATUS.name, block) for block in lost])
+        files = ChunkFiles.of(self.path, self._metadata)
+        lost = files.with_damaged_status()
+        self._remove(files, [(STATUS.name, chunk) for chunk in lost])
         statuses = self.statuses()
-        broken = list(chunks.damaged(statuses, chunks.names))
-        numbers = [one for at in broken for one in self.blocks.numbers(at) if statuses[one]]
-        numbers += [one for one in self._without_run(statuses) if one not in set(numbers)]
-        # Its status comes first: no point may seem done of which something is being replaced.
+        broken = list(files.damaged(statuses, files.names))
+        numbers = [
+            number
+            for chunk in broken
+            for number in self.grid.numbers(chunk)
+            if statuses[number] != STATUS.rest
+        ]
+        numbers += [number for number in self._without_run(statuses) if number not in set(numbers)]
+        # The status is reset first, so that no point seems done while its files are replaced.
         self.forget(numbers)
-        self._remove(chunks, [(name, block) for name in chunks.names for block in (*broken, *lost)])
-        self._mend_known(chunks)
-        return len(numbers) + sum(len(self.blocks.numbers(block)) for block in lost)
+        self._remove(files, [(name, chunk) for name in files.names for chunk in (*broken, *lost)])
+        self._mend_derived(files)
+        return len(numbers) + sum(len(self.grid.numbers(chunk)) for chunk in lost)
 
     def put(self, arrays: Arrays, local: Sequence[int], records: Iterable[Record]) -> None:
-        """Enter records of points into the arrays of their block, at their places in it."""
+        """Enter records of points into the arrays of their chunk.
+
+        Parameters
+        ----------
+        arrays
+            Content of the chunk, which is changed.
+        local
+            Places of the points in the chunk.
+        records
+            Records of the points, as `undula.sweeps.point.point_record` returns them.
+        """
         records = list(records)
-        dims = len(self.study.shape)
+        dims = len(self.sweep.shape)
         for column in self._columns:
             flat = arrays[column.name].reshape(-1, *arrays[column.name].shape[dims:])
-            for at, record in zip(local, records, strict=True):
-                flat[at] = record.get(column.name, column.rest)
+            for place, record in zip(local, records, strict=True):
+                flat[place] = record.get(column.name, column.rest)
 
     def _without_run(self, statuses: np.ndarray[Any, Any]) -> Iterator[int]:
-        """Yield the points that are done and whose run is to be kept, but is not whole."""
-        if self.study.keep == "run":
+        """Yield the points that are done and whose result file is missing or damaged."""
+        if self.sweep.keep == "run":
             for number in np.flatnonzero(statuses == DONE).tolist():
-                path = self.path / RUNS / run_name(self.study, number)
+                path = self.path / RUNS / run_name(self.sweep, number)
                 try:
                     whole = is_whole(path.read_bytes())
                 except OSError:
@@ -155,20 +172,20 @@ class StudyStore:
                 if not whole:
                     yield number
 
-    def _mend_known(self, chunks: Chunks) -> None:
-        if damaged := chunks.damaged_known():
-            made = known_arrays(self.study)
-            self._remove(chunks, [(name, 0) for name in damaged])
-            with folder_trouble_told(self.path):
+    def _mend_derived(self, files: ChunkFiles) -> None:
+        if damaged := files.damaged_derived():
+            derived = derived_arrays(self.sweep)
+            self._remove(files, [(name, 0) for name in damaged])
+            with folder_errors_explained(self.path):
                 for name in damaged:
-                    self._group[name][...] = made[name]
+                    self._group[name][...] = derived[name]
 
-    def _remove(self, chunks: Chunks, places: Sequence[tuple[str, int]]) -> None:
-        with folder_trouble_told(self.path):
-            for name, block in places:
-                (self.path / chunks.key(name, block)).unlink(missing_ok=True)
+    def _remove(self, files: ChunkFiles, chunks: Sequence[tuple[str, int]]) -> None:
+        with folder_errors_explained(self.path):
+            for name, chunk in chunks:
+                (self.path / files.key(name, chunk)).unlink(missing_ok=True)
 
-    def keep_run(self, number: int, image: bytes) -> None:
+    def store_run(self, number: int, image: bytes) -> None:
         """Store the result file of a point's run.
 
         Raises
@@ -176,7 +193,7 @@ class StudyStore:
         InputError
             The folder cannot be written or is full.
         """
-        write_whole(self.path / RUNS / run_name(self.study, number), image, overwrite=True)
+        write_whole(self.path / RUNS / run_name(self.sweep, number), image, overwrite=True)
 
     @contextmanager
     def alone(self) -> Iterator[None]:
@@ -185,41 +202,41 @@ class StudyStore:
         Raises
         ------
         InputError
-            Another process does, or the store cannot be written.
+            Another process writes it, or the store cannot be written.
         """
         busy = f"another undula sweep is at work on {self.path}; wait for it, or give another --out"
         with locked(self.path, busy, lock=self.path / ".lock"):
             yield
 
 
-def run_name(study: Study, number: int) -> str:
-    """Return the name of the file of a point's run: its indices along the axes, and of its try."""
-    return "-".join(map(str, study.place(number))) + ".nc"
+def run_name(sweep: Sweep, number: int) -> str:
+    """Return the file name of a point's run: indices along the axes, and of the replicate."""
+    return "-".join(map(str, sweep.place(number))) + ".nc"
 
 
-def open_study(path: Path, study: Study) -> StudyStore:
-    """Return the store of a study, which is made if there is none.
+def open_sweep(path: Path, sweep: Sweep) -> SweepStore:
+    """Return the store of a sweep in a folder, which is made if it does not exist.
 
     Raises
     ------
     InputError
-        It could not fit on the disk; there is something else in its place, or it holds another
-        study or was made by another version; or the folder cannot be written.
+        The sweep could not fit on the disk; the folder holds something else, another sweep or one
+        of another version of undula; or it cannot be written.
     """
     if not path.exists():
-        refuse_too_large_a_store(path, study)
-        with folder_trouble_told(path):
-            lay_out(path, study)
+        refuse_too_large_a_store(path, sweep)
+        with folder_errors_explained(path):
+            lay_out(path, sweep)
     metadata = _metadata_of(path)
-    told = metadata.attributes
-    if told["software"] != software():
+    attributes = metadata.attributes
+    if attributes["software"] != software():
         raise InputError(
-            f"{path} was made by undula {told['software']} and cannot be gone on with by"
+            f"{path} was made by undula {attributes['software']} and cannot be gone on with by"
             f" undula {software()}; go on with that version, or give another --out"
         )
-    # Both have to have been through JSON, for lists to be alike.
-    wanted = json.loads(json.dumps(study.dump()))
-    differs = difference(json.loads(told["study"]), wanted)
+    # Both pass through JSON, which turns tuples into lists.
+    wanted = json.loads(json.dumps(sweep.dump()))
+    differs = difference(json.loads(attributes["study"]), wanted)
     if differs is not None:
         raise InputError(f"{path} holds another study, with {differs}; give another --out")
     if not metadata.checked:
@@ -227,43 +244,53 @@ def open_study(path: Path, study: Study) -> StudyStore:
             f"{path} carries no checksums, since other software or an earlier version stored it,"
             " and can be drawn but not gone on with; give another --out"
         )
-    return StudyStore(path, study)
+    return SweepStore(path, sweep)
 
 
 def load_sweep(path: Path | str, *, shapes: bool = True) -> xr.Dataset:
-    """Open a stored study; its variables are read when they are asked for.
+    """Open a stored sweep; its variables are read when they are used.
 
-    Points of which something is damaged are shown as not done, and a warning says how many.
+    Damaged points are shown as not done, with a warning that states their number.
 
     Parameters
     ----------
     path
-        A store that ``undula sweep`` made, also while it is still at work on it.
+        A store written by ``undula sweep``, which may still be running.
     shapes
-        Whether the shapes of last periods are among the variables. They are nearly all of a store,
-        and looking for damage in them takes as long as reading them.
+        If true, the variables include the shapes of last periods, which are nearly all of a store.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables over the axes, named as "load.force", and the replicates, named "try".
 
     Raises
     ------
     InputError
-        There is no such store, or what it says of itself is damaged.
+        There is no such store, or its metadata are damaged.
+
+    Examples
+    --------
+    >>> import undula
+    >>> stored = undula.load_sweep("results/point-loads.zarr")  # doctest: +SKIP
+    >>> stored["verdict"].sel({"load.force": 75.0})  # doctest: +SKIP
     """
     path = Path(path)
     if path.is_file():
-        # Other software may have stored it again in one file.
+        # Other software may have stored the sweep again as one file.
         return read_result(path, Kind(FORMAT, "undula sweep"))
     return sound_dataset(path, _metadata_of(path), shapes=shapes)
 
 
 def _metadata_of(path: Path) -> Metadata:
-    """Return what a stored study says of itself."""
+    """Return the metadata of a stored sweep."""
     if not path.exists():
         raise InputError(f"there is no study {path}; check the name")
     metadata = read_metadata(path)
-    found = metadata.attributes.get("undula_format")
-    if found != FORMAT:
+    written = metadata.attributes.get("undula_format")
+    if written != FORMAT:
         raise InputError(
-            f"{path} has the format {found!r}, not {FORMAT!r}; give a folder that this version of"
+            f"{path} has the format {written!r}, not {FORMAT!r}; give a folder that this version of"
             " undula sweep made"
         )
     return metadata

@@ -1,8 +1,8 @@
-"""A study: what is varied, and the complete input of each of its points.
+"""Definition of a sweep: its axes, and the complete input of each of its points.
 
-Points are numbered through: by the axes in their order, and last by the try. The number of a point
-makes the seed of its random start, so that it does not matter when, where or in which order points
-are run.
+Points are numbered along the axes in their order, and last along the replicates. The number of a
+point determines the seed of its random start, so that the results do not depend on when, where or
+in which order points are computed.
 """
 
 import json
@@ -19,33 +19,41 @@ from undula.analysis.parameters import FORCE
 from undula.analysis.runs.memory_needed import refuse_too_large
 from undula.errors import InputError
 from undula.inputs.build import build_model, build_schedule, build_start
-from undula.inputs.input import RunInput, StudyInput, parse_input, read_tables
+from undula.inputs.input import RunInput, SweepInput, parse_input, read_tables
 from undula.inputs.messages import nearest
-from undula.inputs.sweep_table import MOST_POINTS, StudyTable
+from undula.inputs.sweep_table import MOST_POINTS, SweepTable
 
 Tables = Mapping[str, Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
 class Axis:
-    """A key of the input, such as ``load.force``, and the values that it takes."""
+    """A key of the input and the values that it takes.
+
+    Attributes
+    ----------
+    key
+        Table and name, such as ``load.force``.
+    values
+        The values in their order.
+    """
 
     key: str
     values: tuple[int | float, ...]
 
 
 @dataclass(frozen=True)
-class Study:
-    """A checked study.
+class Sweep:
+    """A checked sweep.
 
     Attributes
     ----------
     settings
-        Its table ``[study]``, without the axes.
+        The table ``[study]`` of the input, without the axes.
     axes
-        What is varied, the last one fastest.
+        The axes; the last one varies fastest.
     shared
-        The resolved input as far as it is the same at all points.
+        The part of the resolved input that all points have in common.
     """
 
     settings: Mapping[str, Any]
@@ -54,72 +62,72 @@ class Study:
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
-        """Number of values of each axis, and of tries."""
+        """Number of values of each axis, and of replicates."""
         return (*(len(axis.values) for axis in self.axes), self.settings.get("tries", 1))
 
     @property
     def count(self) -> int:
-        """Number of points, each try one."""
+        """Number of points; each replicate counts as one."""
         return math.prod(self.shape)
 
     @property
     def label(self) -> str:
-        """What is found at a point."""
+        """The result of a point: "runs" for the end of a run, "solved" for solved states."""
         return str(self.settings["label"])
 
     @property
     def policy(self) -> str:
-        """How runs begin; a study of solved states has none."""
+        """The start of runs: "same", "random" or "neighbour"; unused by sweeps of solved states."""
         return str(self.settings.get("policy", "same"))
 
     @property
     def keep(self) -> str:
-        """What is kept of a run."""
+        """The stored part of a run: "verdict", "period" or "run"."""
         return str(self.settings.get("keep", "verdict"))
 
     @property
     def undecided(self) -> str:
-        """What becomes of points whose runs do not tell."""
+        """Treatment of undecided runs: "keep" leaves them so, "solve" uses solved states."""
         return str(self.settings.get("undecided", "keep"))
 
     @property
-    def whole_lines(self) -> bool:
-        """Whether the points along the last axis are done together, in their order."""
+    def whole_rows(self) -> bool:
+        """True if the points along the last axis are computed together, in their order."""
         last = self.axes[-1]
         if self.label == "solved":
-            # The states along a branch are had by following it once.
+            # One branch, followed once along the force, holds the states of a whole row.
             return last.key == FORCE and min(last.values) >= 0.0
         return self.policy == "neighbour"
 
     def place(self, number: int) -> tuple[int, ...]:
-        """Return the indices of a point along the axes, and of its try."""
+        """Return the indices of a point along the axes, and of its replicate."""
         return tuple(map(int, np.unravel_index(number, self.shape)))
 
     def tables(self, number: int) -> dict[str, dict[str, Any]]:
-        """Return the input of a point as plain tables, as `undula run` reads them."""
+        """Return the input of a point as plain tables, in the form that ``undula run`` reads."""
         tables = {name: dict(table) for name, table in self.shared.items()}
-        for axis, at in zip(self.axes, self.place(number), strict=False):
+        for axis, index in zip(self.axes, self.place(number), strict=False):
             table, key = axis.key.split(".")
-            tables[table][key] = axis.values[at]
+            tables[table][key] = axis.values[index]
         if self.policy == "random":
             seed, amplitude = self._drawn(number)
             tables["start"] = {"shape": "kicked", "amplitude": amplitude, "seed": seed}
         return tables
 
-    def job(self, number: int) -> dict[str, Any]:
-        """Return what `undula.sweeps.point.point` wants of a point, in plain types."""
-        job: dict[str, Any] = {
+    def request(self, number: int) -> dict[str, Any]:
+        """Return the argument of `undula.sweeps.point.point_record` for a point."""
+        request: dict[str, Any] = {
             "tables": self.tables(number),
             "label": self.label,
             "keep": self.keep,
             "undecided": self.undecided,
         }
         if self.policy == "neighbour":
-            job["kick"] = (self.settings["kick"], self._drawn(number)[0])
-        return job
+            request["kick"] = (self.settings["kick"], self._drawn(number)[0])
+        return request
 
     def seed(self, number: int) -> int:
-        """Return the seed of what is random in the start of a point, -1 if nothing is."""
+        """Return the seed of a point's random start or kick, -1 if nothing in it is random."""
         if self.label == "solved":
             return -1
         if self.policy == "neighbour":
@@ -127,22 +135,22 @@ class Study:
         return int(self.tables(number)["start"].get("seed", -1))
 
     def dump(self) -> dict[str, Any]:
-        """Return the complete study as plain JSON types; `of_dump` makes it again."""
+        """Return the complete sweep in plain JSON types; `sweep_from_dump` is the inverse."""
         axes = [{"key": axis.key, "values": list(axis.values)} for axis in self.axes]
         return {"study": {**self.settings, "axes": axes}, **self.shared}
 
     def _drawn(self, number: int) -> tuple[int, float]:
-        """Return seed and amplitude of a point's own random start."""
+        """Return seed and amplitude [rad] of a point's random start."""
         own = np.random.SeedSequence((self.settings["seed"], number))
         first, second = (int(word) for word in own.generate_state(2, np.uint64))
         least, largest = self.settings.get("amplitudes", (1.0, 1.0))
-        # The part of the way from one to the other, on a scale of logarithms.
+        # Uniform in the logarithm of the amplitude.
         amplitude = least * (largest / least) ** (second / 2**64)
         return first >> 1, min(max(amplitude, least), largest)  # of 63 bits, to fit an int64
 
 
-def read_study(path: Path, overrides: Sequence[str] = ()) -> Study:
-    """Read a study and check the input of every one of its points.
+def read_sweep(path: Path, overrides: Sequence[str] = ()) -> Sweep:
+    """Read a sweep and check the input of every point.
 
     Parameters
     ----------
@@ -154,96 +162,98 @@ def read_study(path: Path, overrides: Sequence[str] = ()) -> Study:
     Raises
     ------
     InputError
-        The file cannot be read, a key or value is wrong, an axis varies what is no number of the
-        input, or a point has an input that no run could have. The sentence names the culprit.
+        The file cannot be read, a key or value is wrong, an axis varies a key that is not a
+        number, or the input of a point is invalid. The sentence names the culprit.
     """
-    tables, checked = read_tables(StudyInput, path, overrides)
+    tables, checked = read_tables(SweepInput, path, overrides)
     if not checked.study.axes:
         raise InputError(
             f"{path} varies nothing; add a table [study] and [[study.axes]] with key and values"
         )
-    return _study(checked.study, {name: tables.get(name, {}) for name in RunInput.model_fields})
+    return _resolved_sweep(
+        checked.study, {name: tables.get(name, {}) for name in RunInput.model_fields}
+    )
 
 
-def of_dump(dumped: Mapping[str, Any]) -> Study:
-    """Return the study that `Study.dump` was called on."""
+def sweep_from_dump(dumped: Mapping[str, Any]) -> Sweep:
+    """Return the sweep that `Sweep.dump` was called on."""
     settings = dict(dumped["study"])
     axes = tuple(Axis(axis["key"], tuple(axis["values"])) for axis in settings.pop("axes"))
-    return Study(settings, axes, {name: dumped[name] for name in dumped if name != "study"})
+    return Sweep(settings, axes, {name: dumped[name] for name in dumped if name != "study"})
 
 
-def _study(table: StudyTable, given: Tables) -> Study:
+def _resolved_sweep(table: SweepTable, given: Tables) -> Sweep:
+    """Return the checked sweep of a table ``[study]`` and of the other tables of its file."""
     axes = tuple(_axis(axis.key, axis.resolved) for axis in table.axes)
     settings = {key: value for key, value in table.dump().items() if key != "axes"}
-    settings = json.loads(json.dumps(settings))  # lists, as they are read again
-    draft = Study(settings, axes, given)
+    settings = json.loads(json.dumps(settings))  # tuples become lists, as in a stored sweep
+    draft = Sweep(settings, axes, given)
     if draft.count > MOST_POINTS:
         raise InputError(
             f"the study has {draft.count} points, more than {MOST_POINTS}; give shorter axes"
         )
     _refuse_idle_starts(draft, given)
     _refuse_ragged_shapes(draft)
-    return Study(settings, axes, _shared(draft))
+    return Sweep(settings, axes, _shared(draft))
 
 
 def _axis(key: str, values: Sequence[int | float]) -> Axis:
-    """Return an axis with values of the type that its key has."""
-    known = {
+    """Return an axis with its values in the type of its key."""
+    types = {
         f"{table}.{name}": field.annotation
         for table, of in RunInput.model_fields.items()
         for name, field in getattr(of.annotation, "model_fields", {}).items()
     }
-    if key not in known:
-        near = nearest(key, known)
+    if key not in types:
+        near = nearest(key, types)
         cure = f"did you mean {near}?" if near else "take one such as load.force"
         raise InputError(f"study.axes varies {key}, which is no key of a run; {cure}")
-    kinds = (known[key], *get_args(known[key]))
-    if int in kinds:
+    if int in (types[key], *get_args(types[key])):
         whole = all(value == round(value) for value in values)
         return Axis(key, tuple(int(value) for value in values) if whole else tuple(values))
     return Axis(key, tuple(float(value) for value in values))
 
 
-def _refuse_ragged_shapes(study: Study) -> None:
-    """Refuse to keep shapes of different numbers of nodes, for which one array has no room."""
-    ragged = [axis.key for axis in study.axes if axis.key in ("model.segments", "model.links")]
-    if study.keep == "period" and ragged:
+def _refuse_ragged_shapes(sweep: Sweep) -> None:
+    """Refuse to store shapes of different numbers of nodes, which do not fit in one array."""
+    ragged = [axis.key for axis in sweep.axes if axis.key in ("model.segments", "model.links")]
+    if sweep.keep == "period" and ragged:
         raise InputError(
             f"{ragged[0]} varies, and shapes of different lengths do not fit in one array; use"
             " study.keep = 'run' or 'verdict', or leave out this axis"
         )
 
 
-def _refuse_idle_starts(study: Study, given: Tables) -> None:
-    """Refuse settings of the start that no point would read."""
-    if study.policy == "random":
-        idle = [axis.key for axis in study.axes if axis.key.startswith("start.")]
+def _refuse_idle_starts(sweep: Sweep, given: Tables) -> None:
+    """Refuse settings of the start that no point would use."""
+    if sweep.policy == "random":
+        idle = [axis.key for axis in sweep.axes if axis.key.startswith("start.")]
         idle += [f"start.{key}" for key in given["start"]]
         if idle:
             raise InputError(
                 f"{idle[0]} has no meaning for study.policy = 'random', whose starts follow from"
                 f" study.amplitudes and study.seed; remove {idle[0]}"
             )
-    last = study.axes[-1].key
-    if study.policy == "neighbour" and last.startswith("start."):
+    last = sweep.axes[-1].key
+    if sweep.policy == "neighbour" and last.startswith("start."):
         raise InputError(
             f"{last} has no meaning along the last axis for study.policy = 'neighbour', whose runs"
             " begin with what the one before has come to; put another axis last"
         )
 
 
-def _shared(draft: Study) -> Tables:
-    """Check the input of all points; return what they have in common when it is resolved."""
+def _shared(draft: Sweep) -> Tables:
+    """Check the input of all points; return the part of the resolved input that they share."""
     common: dict[str, dict[str, Any]] | None = None
-    tries = draft.shape[-1]
-    for number in range(0, draft.count, tries):
+    replicates = draft.shape[-1]
+    for number in range(0, draft.count, replicates):
         dumped = _checked(draft, number).dump()
         if common is None:
             common = dumped
         for name, table in common.items():
             for key in [key for key in table if table[key] != dumped[name].get(key)]:
-                del table[key]  # an axis, or a default that depends on one
-    assert common is not None  # there is a point at least
+                del table[key]  # an axis, or a default that depends on an axis
+    assert common is not None  # a sweep has at least one point
     for name, key in (axis.key.split(".") for axis in draft.axes):
         common[name].pop(key, None)
     if draft.policy == "random":
@@ -251,14 +261,15 @@ def _shared(draft: Study) -> Tables:
     return common
 
 
-def _checked(draft: Study, number: int) -> RunInput:
+def _checked(draft: Sweep, number: int) -> RunInput:
+    """Return the input of a point; refuse one with which no run can begin."""
     try:
         wanted = parse_input(draft.tables(number))
         model = build_model(wanted)
-        model.straight()  # of which extensible links may be incapable
+        model.straight()  # raises an error for extensible links that have no straight state
         refuse_too_large(model, build_schedule(wanted))
         if number == 0:
-            build_start(wanted, model)  # which may lie in a file
+            build_start(wanted, model)  # the start may be read from a file
         if model.unwrapped and draft.policy == "neighbour":
             raise InputError(
                 "joints that wind up lose their full turns between neighbours; use model.spring ="
@@ -266,6 +277,6 @@ def _checked(draft: Study, number: int) -> RunInput:
             )
     except InputError as error:
         place = zip(draft.axes, draft.place(number), strict=False)
-        told = ", ".join(f"{axis.key} = {axis.values[at]}" for axis, at in place)
-        raise InputError(f"the study cannot run at {told}: {error}") from None
+        values = ", ".join(f"{axis.key} = {axis.values[index]}" for axis, index in place)
+        raise InputError(f"the study cannot run at {values}: {error}") from None
     return wanted

@@ -1,4 +1,4 @@
-"""What is left to do of a study, cut into pieces of about a second, and what has come back."""
+"""Work queue of a sweep: missing points in tasks of about a second, and results taken back."""
 
 import math
 import statistics
@@ -12,29 +12,39 @@ import numpy as np
 
 from undula.schema.sweep_axes import FAILED, NOT_DONE
 from undula.storage.unchecked import warn_damaged
-from undula.sweeps.point import PIECE_SECONDS
-from undula.sweeps.store import Arrays, StudyStore
+from undula.sweeps.point import TASK_SECONDS
+from undula.sweeps.store import Arrays, SweepStore
 
-#: Points of a piece as long as nobody knows how long they take.
+#: Points of a task while the time that a point takes is unknown.
 FIRST_POINTS = 2
-#: What the last points took, the median of so many, tells how long the next will take.
+#: Number of recent points whose median time predicts the time of the next one.
 REMEMBERED = 101
-#: Seconds after which what is known of a block is written even if points are missing.
+#: Time after which the results of a chunk are written even if points are missing [s].
 SAVE_EVERY = 5.0
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Points of one block that are done together; `deaths` times all workers died under them."""
+class SweepTask:
+    """Points of one chunk that one worker computes together.
 
-    block: int
+    Attributes
+    ----------
+    chunk
+        Number of the chunk.
+    numbers
+        Numbers of the points.
+    deaths
+        Number of times that every worker died that the task was given to.
+    """
+
+    chunk: int
     numbers: tuple[int, ...]
     deaths: int = 0
 
 
 @dataclass
-class _Open:
-    """What is known of a block of which points are missing."""
+class _OpenChunk:
+    """Results of a chunk with missing points; `unsaved_since` is infinite if all are written."""
 
     arrays: Arrays
     missing: set[int]
@@ -42,19 +52,19 @@ class _Open:
 
 
 class SweepWork:
-    """The work that is left of a study, handed out in order and taken back in any.
+    """The missing points of a sweep, handed out in order and taken back in any order.
 
     Parameters
     ----------
     store
-        Where the results go.
+        The store of the sweep.
     retry_failed
-        Whether points that have failed are left to do.
+        If true, failed points are computed again.
     """
 
-    def __init__(self, store: StudyStore, *, retry_failed: bool = False) -> None:
-        self._store, self._study = store, store.study
-        self._whole_lines = store.study.whole_lines
+    def __init__(self, store: SweepStore, *, retry_failed: bool = False) -> None:
+        self._store, self._sweep = store, store.sweep
+        self._whole_rows = store.sweep.whole_rows
         if damaged := store.mend():
             warn_damaged(store.path, damaged)
         self._statuses = store.statuses()
@@ -62,19 +72,19 @@ class SweepWork:
             store.forget(np.flatnonzero(self._statuses == FAILED).tolist())
             self._statuses[self._statuses == FAILED] = NOT_DONE
         self._counts = np.bincount(self._statuses, minlength=FAILED + 1).tolist()
-        self._open: dict[int, _Open] = {}
-        self._again: deque[Piece] = deque()
+        self._open: dict[int, _OpenChunk] = {}
+        self._again: deque[SweepTask] = deque()
         self._seconds: deque[float] = deque(maxlen=REMEMBERED)
-        self._left = self._pieces()
+        self._fresh = self._tasks()
 
     @property
     def total(self) -> int:
-        """Number of points of the study."""
-        return self._study.count
+        """Number of points of the sweep."""
+        return self._sweep.count
 
     @property
     def left(self) -> int:
-        """Number of points that have not come back."""
+        """Number of points without a result."""
         return int(self._counts[NOT_DONE])
 
     @property
@@ -82,42 +92,50 @@ class SweepWork:
         """Number of points that have failed."""
         return int(self._counts[FAILED])
 
-    def take(self) -> Piece | None:
-        """Return a piece to be done; None if there is no more."""
-        return self._again.popleft() if self._again else next(self._left, None)
+    def take(self) -> SweepTask | None:
+        """Return a task to be computed; None if no task is left."""
+        return self._again.popleft() if self._again else next(self._fresh, None)
 
-    def take_back(self, piece: Piece, records: Sequence[Mapping[str, Any]]) -> None:
-        """Enter the records of a piece; what it was too long for is handed out again, in halves."""
-        piece, rest = _cut(piece, len(records))
-        self._again.extend(part for part in _cut(rest, len(rest.numbers) // 2) if part.numbers)
-        block = self._open[piece.block]
-        first = self._store.blocks.numbers(piece.block).start
-        self._store.put(block.arrays, [number - first for number in piece.numbers], records)
-        for number, record in zip(piece.numbers, records, strict=True):
+    def take_back(self, task: SweepTask, records: Sequence[Mapping[str, Any]]) -> None:
+        """Enter the results of a task; points without a result are handed out again, in halves.
+
+        Parameters
+        ----------
+        task
+            A task that `take` has returned.
+        records
+            Records of its first points, in order.
+        """
+        task, rest = _cut(task, len(records))
+        self._again.extend(half for half in _cut(rest, len(rest.numbers) // 2) if half.numbers)
+        chunk = self._open[task.chunk]
+        first = self._store.grid.numbers(task.chunk).start
+        self._store.put(chunk.arrays, [number - first for number in task.numbers], records)
+        for number, record in zip(task.numbers, records, strict=True):
             if "image" in record:
-                self._store.keep_run(number, record["image"])
+                self._store.store_run(number, record["image"])
             self._counts[self._statuses[number]] -= 1
             self._counts[record["status"]] += 1
             self._statuses[number] = record["status"]
             if math.isfinite(record["seconds"]):
                 self._seconds.append(record["seconds"])
-        block.missing.difference_update(piece.numbers)
-        block.unsaved_since = min(block.unsaved_since, time.monotonic())
+        chunk.missing.difference_update(task.numbers)
+        chunk.unsaved_since = min(chunk.unsaved_since, time.monotonic())
 
-    def died(self, piece: Piece) -> None:
-        """Take back a piece under which every worker died: one of its points may be to blame."""
-        half = len(piece.numbers) // 2
-        if half and not self._whole_lines:
-            self._again.extend(_cut(piece, half))
-        elif piece.deaths == 0:
-            self._again.append(Piece(piece.block, piece.numbers, deaths=1))
+    def died(self, task: SweepTask) -> None:
+        """Take back a task over which every worker died, perhaps because of one of its points."""
+        half = len(task.numbers) // 2
+        if half and not self._whole_rows:
+            self._again.extend(_cut(task, half))
+        elif task.deaths == 0:
+            self._again.append(SweepTask(task.chunk, task.numbers, deaths=1))
         else:
             reason = "every worker died that it was given to, perhaps for want of memory"
             record = {"status": FAILED, "reason": reason, "seconds": math.nan}
-            self.take_back(piece, [record] * len(piece.numbers))
+            self.take_back(task, [record] * len(task.numbers))
 
     def save(self, age: float = 0.0) -> None:
-        """Store the blocks that are complete, and those that have waited for so many seconds.
+        """Store the complete chunks, and those with results older than `age` [s].
 
         Raises
         ------
@@ -125,46 +143,49 @@ class SweepWork:
             The folder cannot be written or is full.
         """
         now = time.monotonic()
-        for number, block in list(self._open.items()):
-            if not block.missing or now - block.unsaved_since >= age:
-                self._store.write(number, block.arrays)
-                block.unsaved_since = math.inf
-            if not block.missing:
+        for number, chunk in list(self._open.items()):
+            if not chunk.missing or now - chunk.unsaved_since >= age:
+                self._store.write(number, chunk.arrays)
+                chunk.unsaved_since = math.inf
+            if not chunk.missing:
                 del self._open[number]
 
-    def _pieces(self) -> Iterator[Piece]:
-        for number in range(len(self._store.blocks)):
-            inside = self._store.blocks.numbers(number)
+    def _tasks(self) -> Iterator[SweepTask]:
+        for number in range(len(self._store.grid)):
+            inside = self._store.grid.numbers(number)
             statuses = self._statuses[inside.start : inside.stop]
             if (statuses != NOT_DONE).all():
                 continue
-            fresh = (statuses == NOT_DONE).all()
-            arrays = self._store.blank(number) if fresh else self._store.read(number)
-            pieces = self._lines(inside) if self._whole_lines else self._runs_of(inside)
+            untouched = (statuses == NOT_DONE).all()
+            arrays = self._store.blank(number) if untouched else self._store.read(number)
+            groups = self._rows(inside) if self._whole_rows else self._groups(inside)
             missing = {point for point in inside if self._statuses[point] == NOT_DONE}
-            self._open[number] = _Open(arrays, missing)
-            yield from (Piece(number, part) for part in pieces)
+            self._open[number] = _OpenChunk(arrays, missing)
+            yield from (SweepTask(number, group) for group in groups)
 
-    def _runs_of(self, inside: range) -> Iterator[tuple[int, ...]]:
-        """Yield the points that are left of a block, as many at a time as a piece should have."""
-        left = [number for number in inside if self._statuses[number] == NOT_DONE]
-        while left:
+    def _groups(self, inside: range) -> Iterator[tuple[int, ...]]:
+        """Yield the missing points of a chunk in groups that take about `TASK_SECONDS`."""
+        missing = [number for number in inside if self._statuses[number] == NOT_DONE]
+        while missing:
             count = FIRST_POINTS
             if self._seconds:
-                pace = statistics.median(self._seconds)
-                count = max(1, min(len(left), int(PIECE_SECONDS / max(pace, 1e-6))))
-            yield tuple(left[:count])
-            left = left[count:]
+                typical = statistics.median(self._seconds)
+                count = max(1, min(len(missing), int(TASK_SECONDS / max(typical, 1e-6))))
+            yield tuple(missing[:count])
+            missing = missing[count:]
 
-    def _lines(self, inside: range) -> Iterator[tuple[int, ...]]:
-        """Yield the lines of a block in which points are left, in the order of their points."""
-        length = self._study.shape[-2]
+    def _rows(self, inside: range) -> Iterator[tuple[int, ...]]:
+        """Yield the rows of a chunk with missing points, in the order of computation."""
+        length = self._sweep.shape[-2]
         for start in range(inside.start, inside.stop, length):
-            line = tuple(range(start, start + length))
-            if any(self._statuses[number] == NOT_DONE for number in line):
-                yield line[::-1] if self._study.settings.get("direction") == "down" else line
+            row = tuple(range(start, start + length))
+            if any(self._statuses[number] == NOT_DONE for number in row):
+                yield row[::-1] if self._sweep.settings.get("direction") == "down" else row
 
 
-def _cut(piece: Piece, count: int) -> tuple[Piece, Piece]:
-    """Return the first points of a piece, and the others."""
-    return Piece(piece.block, piece.numbers[:count]), Piece(piece.block, piece.numbers[count:])
+def _cut(task: SweepTask, count: int) -> tuple[SweepTask, SweepTask]:
+    """Return the first `count` points of a task and the others, as two tasks."""
+    return (
+        SweepTask(task.chunk, task.numbers[:count]),
+        SweepTask(task.chunk, task.numbers[count:]),
+    )

@@ -1,4 +1,4 @@
-"""Workers for the pieces of a study: processes on this machine, or any scheduler's; on Dask."""
+"""Workers for the tasks of a sweep, on Dask: processes of this machine or of any scheduler."""
 
 import asyncio
 import queue
@@ -13,49 +13,54 @@ from distributed.comm.core import CommClosedError
 from undula.errors import InputError
 from undula.sweeps.own_workers import closing, own_workers, silence, workers_that_fit
 
-#: Pieces for each thread that are with the workers or on their way: one to do, one to do next.
+#: Tasks for each thread that are at the workers or on their way: one in work, one to be next.
 AHEAD = 2
-#: Seconds between two looks at how many workers there are.
-LOOK_EVERY = 1.0
-#: Seconds to wait for a scheduler to answer at first, and then at each look.
+#: Time between two counts of the workers [s].
+COUNT_EVERY = 1.0
+#: Time to wait for a scheduler to answer, at first and at each count of the workers [s].
 PATIENCE, ANSWERS_IN = 20.0, 2.0
-#: Seconds after which the want of workers is told.
-TOLD_AFTER = 5.0
-#: Seconds without any worker after which a study is left: of our own, which start in some; of a
-#: scheduler's, which may have to wait for a machine; and without an answer from a scheduler.
+#: Time without workers after which the user is notified [s].
+NOTIFY_AFTER = 5.0
+#: Time without workers after which a sweep is stopped [s]: own workers start within seconds, those
+#: of another scheduler may have to wait for a machine. Then the time without an answer of it.
 OWN_PATIENCE, FOREIGN_PATIENCE, SILENCE = 60.0, 600.0, 60.0
-#: Seconds between two times that workers are started in place of lost ones.
-MEND_EVERY = 10.0
+#: Time between two replacements of lost workers [s].
+REPLACE_EVERY = 10.0
 
 
 class LostError(Exception):
-    """There is nobody left to do the pieces; `status` and `told` say who is gone.
+    """No worker is left for the tasks.
 
-    Both are words of an answer, as in "the study was left by its scheduler".
+    Attributes
+    ----------
+    status
+        Status of the answer, such as "scheduler lost".
+    text
+        Words for people, as in "the study was left by its scheduler".
     """
 
-    def __init__(self, status: str, told: str) -> None:
-        super().__init__(told)
-        self.status, self.told = status, told
+    def __init__(self, status: str, text: str) -> None:
+        super().__init__(text)
+        self.status, self.text = status, text
 
 
 class DiedError(Exception):
-    """Every worker died that a piece was given to."""
+    """Every worker died that a task was given to."""
 
 
 class Pool:
-    """Workers that are given pieces and give back what they came to, in any order.
+    """Workers that take tasks and return their results in any order.
 
     Parameters
     ----------
     client
-        How to reach them.
+        Dask client of their scheduler.
     say
-        Called with a sentence if there are none for a while.
+        Called with a sentence if there are no workers for a while.
     count
-        How many there should be; None if that is not known.
-    mend
-        Starts others in place of those that are gone.
+        Wanted number of workers; None if it is unknown.
+    replace_lost
+        Starts workers in place of lost ones.
     """
 
     def __init__(
@@ -63,36 +68,44 @@ class Pool:
         client: Client,
         say: Callable[[str], None],
         count: int | None = None,
-        mend: Callable[[], None] = lambda: None,
+        replace_lost: Callable[[], None] = lambda: None,
     ) -> None:
-        self._client, self._say, self._count, self._mend = client, say, count, mend
+        self._client, self._say, self._count = client, say, count
+        self._replace_lost = replace_lost
         self._patience = FOREIGN_PATIENCE if count is None else OWN_PATIENCE
         self._finished: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
-        self._pieces: dict[Future[Any], Any] = {}
+        self._tasks: dict[Future[Any], Any] = {}
         now = time.monotonic()
-        self._threads, self._look_due, self._mend_due = 0, now, now + MEND_EVERY
-        self._answered, self._served, self._told = now, now, False
+        self._threads, self._count_due, self._replace_due = 0, now, now + REPLACE_EVERY
+        self._answered, self._served, self._notified = now, now, False
 
     @property
     def busy(self) -> bool:
-        """Whether a piece has been given away and has not come back."""
-        return bool(self._pieces)
+        """True while a task is at the workers."""
+        return bool(self._tasks)
 
     @property
     def has_room(self) -> bool:
-        """Whether a worker would soon have nothing to do.
+        """True if a worker would soon be idle.
 
         Raises
         ------
         LostError
             The scheduler is gone, or there have been no workers for long.
         """
-        self._look()
-        # Pieces are ready for workers that are still to come.
-        return len(self._pieces) < AHEAD * max(1, self._threads)
+        self._check_workers()
+        # One thread is assumed while workers are still starting.
+        return len(self._tasks) < AHEAD * max(1, self._threads)
 
-    def give(self, piece: Any, work: Callable[..., Any], *what: Any) -> None:
-        """Send a piece away: what the work on it is to be called with, in plain types.
+    def give(self, task: Any, function: Callable[..., Any], *arguments: Any) -> None:
+        """Send a task to the workers.
+
+        Parameters
+        ----------
+        task
+            Any object; `come_back` yields it with the result.
+        function, arguments
+            Called by a worker; the arguments are plain types.
 
         Raises
         ------
@@ -100,14 +113,14 @@ class Pool:
             The scheduler is gone.
         """
         with self._reached():
-            future = self._client.submit(work, *what, pure=False)
-        self._pieces[future] = piece
+            future = self._client.submit(function, *arguments, pure=False)
+        self._tasks[future] = task
         future.add_done_callback(self._finished.put)
 
     def come_back(self, patience: float) -> Iterator[tuple[Any, Any]]:
-        """Yield pieces that have come back, each with its result, after so many seconds at most.
+        """Yield the finished tasks with their results, after at most `patience` seconds.
 
-        A piece under which every worker died comes back with a `DiedError`.
+        The result of a task over which every worker died is a `DiedError`.
 
         Raises
         ------
@@ -116,7 +129,7 @@ class Pool:
         InputError
             The workers cannot run undula.
         """
-        self._look()
+        self._check_workers()
         try:
             ready = [self._finished.get(timeout=patience)]
         except queue.Empty:
@@ -124,32 +137,32 @@ class Pool:
         while not self._finished.empty():
             ready.append(self._finished.get())
         for future in ready:
-            yield self._pieces.pop(future), _outcome(future)
+            yield self._tasks.pop(future), _outcome(future)
 
-    def _look(self) -> None:
-        """Count the workers every now and then, and do something about lost ones."""
+    def _check_workers(self) -> None:
+        """Count the workers every `COUNT_EVERY` seconds, and replace lost ones."""
         now = time.monotonic()
-        if now < self._look_due:
+        if now < self._count_due:
             return
         self._count_threads(now)
         now = time.monotonic()
-        self._look_due = now + LOOK_EVERY
+        self._count_due = now + COUNT_EVERY
         if now - self._answered > SILENCE:
             raise _no_scheduler()
         if now - self._served > self._patience:
             raise LostError("no workers", "left without workers")
-        if now - self._served > TOLD_AFTER and not self._told and self._count is None:
-            self._told = True
+        if now - self._served > NOTIFY_AFTER and not self._notified and self._count is None:
+            self._notified = True
             self._say(f"the scheduler has no workers; waiting for {self._patience:g} s for some")
-        if self._count is not None and self._threads < self._count and now > self._mend_due:
-            self._mend_due = now + MEND_EVERY
-            self._mend()
+        if self._count is not None and self._threads < self._count and now > self._replace_due:
+            self._replace_due = now + REPLACE_EVERY
+            self._replace_lost()
 
     def _count_threads(self, now: float) -> None:
         try:
             with self._reached():
                 scheduler: Any = self._client.scheduler
-                # Those that pause have run out of memory and take no more.
+                # Paused workers, which have run out of memory and take no tasks, do not count.
                 threads = self._client.sync(
                     scheduler.ncores_running, workers=None, callback_timeout=ANSWERS_IN
                 )
@@ -157,11 +170,11 @@ class Pool:
             return
         self._answered, self._threads = now, sum(threads.values())
         if self._threads:
-            self._served, self._told = now, False
+            self._served, self._notified = now, False
 
     @contextmanager
     def _reached(self) -> Iterator[None]:
-        """Tell whatever a client raises that has lost its scheduler."""
+        """Turn any error of a client that has lost its scheduler into a `LostError`."""
         try:
             yield
         except Exception as error:
@@ -170,7 +183,7 @@ class Pool:
                 raise _no_scheduler() from error
             raise
         if self._client.status != "running":
-            # It tries to come back, but whoever was there has forgotten all pieces.
+            # The client tries to reconnect, but a new scheduler does not know the tasks.
             raise _no_scheduler()
 
 
@@ -195,27 +208,28 @@ def _outcome(future: Future[Any]) -> Any:
 
 @contextmanager
 def pool(workers: int | None, scheduler: str | None, say: Callable[[str], None]) -> Iterator[Pool]:
-    """Yield workers, and let go of them at the end.
+    """Yield workers that are released at the end.
 
     Parameters
     ----------
     workers
-        Number of processes on this machine; by default one for each processor.
+        Number of processes on this machine; None for one on each processor.
     scheduler
-        Address of a running Dask scheduler, whose workers are used instead.
+        Address of a running Dask scheduler, whose workers are used instead; None for processes of
+        this machine.
     say
-        Called with a sentence on where the dashboard is, and if there are no workers.
+        Called with the address of the dashboard, and with a sentence if there are no workers.
 
     Raises
     ------
     InputError
-        There is no scheduler at the address, or so many workers do not fit.
+        No scheduler answers at the address, or the workers do not fit into memory.
     """
     if scheduler is None:
         count = workers_that_fit(workers)
-        with own_workers(count) as (client, mend):
+        with own_workers(count) as (client, replace_lost):
             say(f"dashboard: {client.dashboard_link}")
-            yield Pool(client, say, count, mend)
+            yield Pool(client, say, count, replace_lost)
         return
     with closing(_client_of(scheduler)) as client:
         if client.dashboard_link:
@@ -226,7 +240,7 @@ def pool(workers: int | None, scheduler: str | None, say: Callable[[str], None])
 def _client_of(scheduler: str) -> Client:
     silence()
     try:
-        # A client waits for ever for a scheduler that takes its call and says nothing.
+        # A client waits forever for a scheduler that accepts the connection and does not answer.
         asyncio.run(asyncio.wait_for(_call(scheduler), PATIENCE))
         return Client(scheduler, timeout=PATIENCE)
     except (OSError, ValueError) as error:
@@ -237,5 +251,5 @@ def _client_of(scheduler: str) -> Client:
 
 async def _call(scheduler: str) -> None:
     arguments = Security().get_connection_args("client")
-    async with rpc(scheduler, timeout=PATIENCE, connection_args=arguments) as there:
-        await there.identity()
+    async with rpc(scheduler, timeout=PATIENCE, connection_args=arguments) as remote:
+        await remote.identity()

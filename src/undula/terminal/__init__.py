@@ -1,1 +1,1 @@
-"""Output to a terminal: answers, progress, numbers with their errors."""
+"""Terminal output: answers, progress, and numbers with their errors."""

@@ -1,4 +1,4 @@
-"""A word to the user while kernels are compiled, and none when they come from the cache."""
+"""Notice to the user while kernels are compiled; silent when they come from the cache."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,7 +12,7 @@ _TEXT = "compiling the kernels, once per installation; this takes about half a m
 
 
 class _FirstCompilation(event.Listener):
-    """Says its sentence at the first compilation; loading from the cache is none."""
+    """Gives notice of the first compilation; loading from the cache does not count."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say = say
@@ -20,28 +20,33 @@ class _FirstCompilation(event.Listener):
 
     def on_start(self, event: event.Event) -> None:  # noqa: ARG002
         if not self._said:
-            self.tell(trouble() or _TEXT)
+            self.give_notice(trouble() or _TEXT)
 
     def on_end(self, event: event.Event) -> None:
-        """Ignore the end: progress of the run follows at once."""
+        """Ignore the end, after which the progress of the run follows at once."""
 
-    def tell(self, text: str | None) -> None:
-        """Say a sentence that has not been said."""
+    def give_notice(self, text: str | None) -> None:
+        """Give notice with a sentence, once."""
         if text is not None and text not in self._said:
             self._said.add(text)
             self._say(text)
 
     @property
-    def heard(self) -> bool:
-        """Whether anything was compiled."""
+    def has_compiled(self) -> bool:
+        """True if anything was compiled."""
         return bool(self._said)
 
 
 @contextmanager
 def compilation_announced(say: Callable[[str], None]) -> Iterator[None]:
-    """Call `say` with one sentence as soon as something has to be compiled in the block.
+    """Give notice of the first compilation in the context.
 
-    Then with another if what was compiled could not be kept, as on a full disk.
+    A second notice follows if the compiled kernels cannot be cached, as on a full disk.
+
+    Parameters
+    ----------
+    say
+        Called with each sentence.
     """
     listener = _FirstCompilation(say)
     event.register(_COMPILE, listener)
@@ -49,5 +54,5 @@ def compilation_announced(say: Callable[[str], None]) -> Iterator[None]:
         yield
     finally:
         event.unregister(_COMPILE, listener)
-        if listener.heard:
-            listener.tell(trouble())
+        if listener.has_compiled:
+            listener.give_notice(trouble())

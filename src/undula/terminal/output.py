@@ -1,4 +1,4 @@
-"""What a command says: its answer on standard output, everything else on standard error."""
+"""Output of commands: answers on standard output, everything else on standard error."""
 
 import json
 import math
@@ -10,22 +10,31 @@ from undula.terminal.streams import Guarded, err, out
 
 #: Exit status of every command.
 DONE, BAD_INPUT, STOPPED_EARLY = 0, 2, 3
-#: What a shell reports for a program ended by Ctrl-C; here: before there was any result.
+#: Exit status that shells report for programs ended by Ctrl-C; here without any result.
 INTERRUPTED = 130
 
+#: An answer in plain JSON types.
 JsonAnswer = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
 class Answer:
-    """An answer in plain JSON types, and the same for people."""
+    """The answer of a command.
+
+    Attributes
+    ----------
+    answer
+        The answer in plain JSON types.
+    text
+        The same answer for people.
+    """
 
     answer: dict[str, Any]
     text: str
 
 
 def reply(answer: JsonAnswer, text: str, *, as_json: bool) -> None:
-    """Give the answer of a command.
+    """Write the answer of a command to standard output.
 
     Parameters
     ----------
@@ -34,26 +43,25 @@ def reply(answer: JsonAnswer, text: str, *, as_json: bool) -> None:
     text
         The same answer for people.
     as_json
-        Which of the two to give: the first as exactly one JSON object, in ASCII whatever the
-        locale.
+        If true, write exactly one JSON object, in ASCII for every locale; else the text.
     """
     _write(out(), json.dumps(finite(answer), indent=2, allow_nan=False) if as_json else text)
 
 
 def notice(sentence: str) -> None:
-    """Tell something that is not the answer, on standard error."""
+    """Write a sentence that is not the answer to standard error."""
     _write(err(), f"undula: {sentence}")
 
 
 def refuse(sentence: str, *, as_json: bool) -> int:
-    """Tell what is wrong with the input, in one sentence.
+    """Report a mistake in the input in one sentence.
 
     Parameters
     ----------
     sentence
-        What is wrong and what would be right.
+        The mistake and its cure.
     as_json
-        Whether to answer with a JSON object on standard output as well.
+        If true, also write a JSON object to standard output.
 
     Returns
     -------
@@ -68,13 +76,13 @@ def refuse(sentence: str, *, as_json: bool) -> int:
 
 
 def interrupted() -> int:
-    """Tell that a command was ended before there was anything to keep; return the exit status."""
+    """Report that a command was ended without any result; return the exit status."""
     notice("interrupted before there was a result; nothing has been kept")
     return INTERRUPTED
 
 
 def finite(value: Any) -> Any:
-    """Return a JSON value with null in place of every number that JSON cannot hold."""
+    """Return a JSON value with null in place of NaN and infinity."""
     if isinstance(value, Mapping):
         return {str(key): finite(part) for key, part in value.items()}
     if isinstance(value, list | tuple):

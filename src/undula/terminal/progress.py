@@ -1,6 +1,6 @@
-"""Progress of tasks that count what they have done or approach a value, with a time estimate.
+"""Progress of counted work and of work that approaches a value, with the remaining time.
 
-Of a search nobody knows how far it is from its end; it tells where it is.
+Searches have no known length; their meter shows the current value.
 """
 
 import time
@@ -12,78 +12,106 @@ from undula.terminal.run_progress import duration
 
 
 @contextmanager
-def counted(task: str) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function to be called with the number of things done and of all."""
+def counted(title: str) -> Iterator[Callable[[int, int], None]]:
+    """Yield a progress function of the number of done and of all items."""
     began = time.monotonic()
-    with meter(task) as show:
+    with meter(title) as show:
 
-        def tell(done: int, total: int) -> None:
+        def update(done: int, total: int) -> None:
             to_go = (time.monotonic() - began) * (total - done) / done
             show(done / total, f"{done} of {total}, {duration(to_go)} to go")
 
-        yield tell
+        yield update
 
 
 @contextmanager
-def stepped(task: str, parameter: str, done: int, total: int) -> Iterator[Callable[..., None]]:
-    """Yield a function to be called with a number of steps done, its parameter's value and a time.
+def stepped(title: str, parameter: str, done: int, total: int) -> Iterator[Callable[..., None]]:
+    """Yield a progress function of the number of done steps, the parameter value and the time.
 
-    `done` steps of all were done before; what they took says nothing about those to come.
+    Parameters
+    ----------
+    title
+        The work in a few words.
+    parameter
+        Name of the parameter.
+    done
+        Number of steps from an earlier call, which do not count for the remaining time.
+    total
+        Number of all steps.
     """
     began: float | None = None
-    with meter(task) as show:
+    with meter(title) as show:
 
-        def tell(now: int, value: float, reached: float) -> None:
+        def update(now: int, value: float, reached: float) -> None:
             nonlocal began
-            began = time.monotonic() if began is None else began  # by now all is compiled
-            here = f"{now} of {total} steps, {parameter} = {value:.6g} at t = {reached:.4g} T"
+            began = time.monotonic() if began is None else began  # after compilation
+            words = f"{now} of {total} steps, {parameter} = {value:.6g} at t = {reached:.4g} T"
             to_go = (time.monotonic() - began) * (total - now) / max(now - done, 1)
-            show(now / total, f"{here}, {duration(to_go)} to go" if now > done else here)
+            show(now / total, f"{words}, {duration(to_go)} to go" if now > done else words)
 
-        yield tell
+        yield update
 
 
 @contextmanager
 def swept(
-    task: str, total: int, left: int, things: str = "points"
+    title: str, total: int, left: int, things: str = "points"
 ) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function to be called with the number of points that are left and that have failed.
+    """Yield a progress function of the number of remaining and of failed points.
 
-    So many of all are left at the beginning; how long those before took says nothing of them.
+    Parameters
+    ----------
+    title
+        The work in a few words.
+    total
+        Number of all points.
+    left
+        Number of remaining points at the beginning; earlier points do not count for the time.
+    things
+        Name of the points in the plural.
     """
     began = time.monotonic()
-    with meter(task) as show:
+    with meter(title) as show:
 
-        def tell(now: int, failed: int) -> None:
+        def update(now: int, failed: int) -> None:
             words = f"{total - now} of {total} {things}" + (f" ({failed} failed)" if failed else "")
             if now < left:
                 to_go = (time.monotonic() - began) * now / (left - now)
                 words += f", {duration(to_go)} to go"
             show((total - now) / total, words)
 
-        yield tell
+        yield update
 
 
 @contextmanager
-def approached(task: str, start: float, end: float) -> Iterator[Callable[[float], None]]:
-    """Yield a function to be called with the value that was reached on the way to `end`."""
-    began = time.monotonic()
-    with meter(task) as show:
+def approached(title: str, start: float, end: float) -> Iterator[Callable[[float], None]]:
+    """Yield a progress function of the value that was reached between `start` and `end`.
 
-        def tell(value: float) -> None:
+    Parameters
+    ----------
+    title
+        The work in a few words.
+    start
+        Value at the beginning.
+    end
+        Value at the end.
+    """
+    began = time.monotonic()
+    with meter(title) as show:
+
+        def update(value: float) -> None:
             part = min(1.0, max(1e-3, (value - start) / (end - start)))
             to_go = (time.monotonic() - began) * (1.0 - part) / part
             show(part, f"at {value:.6g} of {end:.6g}, about {duration(to_go)} to go")
 
-        yield tell
+        yield update
 
 
 @contextmanager
-def searching(task: str) -> Iterator[Callable[..., None]]:
-    """Yield a function to be called with the number of links, and the force that was reached."""
-    with meter(task) as show:
+def searching(title: str) -> Iterator[Callable[..., None]]:
+    """Yield a progress function of the number of links and the force that was reached."""
+    with meter(title) as show:
 
-        def tell(links: int, force: float | None = None) -> None:
+        def update(links: int, force: float | None = None) -> None:
             show(0.0, f"{links} links" if force is None else f"{links} links, force {force:.6g}")
 
-        yield tell
+        yield update

@@ -1,27 +1,27 @@
-"""Where a run is, in words: time reached, length of the step, rate, time still to go."""
+"""Progress of a run in words: reached time, step size, rate and remaining wall time."""
 
 from undula.analysis.runs.integrate import Progress
 
-#: A pace is known after so many seconds; what takes a day or more at it says so.
-KNOWN_AFTER, FAR_TOO_LONG = 10.0, 86400.0
+#: Wall time after which the rate is reliable, and wall time of an overlong run [s].
+RELIABLE_AFTER, FAR_TOO_LONG = 10.0, 86400.0
 
 
 def part_done(progress: Progress) -> float:
-    """Return the part of the run that is done, at least; a settling run may end sooner."""
+    """Return the fraction of a run that is done; a settling run may end at a smaller one."""
     return min(1.0, progress.time / progress.end)
 
 
 def pace(progress: Progress, first: Progress, *, settling: bool) -> str:
-    """Tell where a run is.
+    """Return the progress of a run in words.
 
     Parameters
     ----------
     progress
-        What the run says of itself.
+        Present state of the run.
     first
-        What it said when it was looked at first: compilation lies before that.
+        State at the first report, after compilation.
     settling
-        Whether it ends as soon as it has settled, its end being a limit.
+        True for a run that ends when it has settled; its end time is then a limit.
     """
     most = "at most " if settling else ""
     words = f"t = {progress.time:.4g} of {most}{progress.end:.4g} T, step {progress.step:.1e} T"
@@ -33,12 +33,12 @@ def pace(progress: Progress, first: Progress, *, settling: bool) -> str:
 
 
 def far_too_long(progress: Progress, first: Progress, *, settling: bool) -> str:
-    """Return a sentence on work that will take days at its pace; none on other work.
+    """Return a sentence on a run that would take days at its rate; empty for other runs.
 
     Parameters are those of `pace`.
     """
     gained, spent = _since(first, progress)
-    if spent < KNOWN_AFTER:
+    if spent < RELIABLE_AFTER:
         return ""
     cure = "Ctrl-C and --budget SECONDS stop it, and keep what there is"
     if gained <= 0.0:
@@ -47,12 +47,12 @@ def far_too_long(progress: Progress, first: Progress, *, settling: bool) -> str:
     if to_go < FAR_TOO_LONG:
         return ""
     most = "up to " if settling else ""
-    told = f"at this pace the run takes {most}{duration(to_go)} more, in steps of"
-    return f"{told} {progress.step:.0e} T; {cure}"
+    rate = f"at this pace the run takes {most}{duration(to_go)} more, in steps of"
+    return f"{rate} {progress.step:.0e} T; {cure}"
 
 
 def _since(first: Progress, progress: Progress) -> tuple[float, float]:
-    """Return the time that was gained since a look [T], and the seconds that it took."""
+    """Return the integrated time [T] and the wall time [s] since the first report."""
     return progress.time - first.time, progress.seconds - first.seconds
 
 

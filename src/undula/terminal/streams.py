@@ -1,8 +1,8 @@
-"""Standard output and standard error as they really are: missing, closed, full, or not Unicode.
+"""Guarded standard streams, which may be missing, closed, full or not Unicode.
 
-Nothing that is computed is lost for want of a place to tell it: writing to a guarded stream never
-fails. What a stream cannot print is told in plain letters, an answer without standard output goes
-to standard error, and a standard output that refuses its content is told of at the end.
+Writing to a guarded stream never fails, so that no result is lost with its output. Characters that
+an encoding lacks are replaced by plain letters, an answer without standard output is written to
+standard error, and a standard output that refuses its content is reported at the end.
 """
 
 import errno
@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TextIO
 
-#: What stands for characters that an encoding lacks; accents are taken off without a table.
-_PLAIN = {
+#: Replacements of characters that an encoding lacks; accents are removed without a table.
+_REPLACEMENTS = {
     "±": "+-", "×": "x", "·": "*", "−": "-", "–": "-", "—": "-", "…": "...", "°": " deg",
     "²": "^2", "³": "^3", "⁴": "^4", "⁵": "^5", "⁶": "^6", "⁰": "^0", "¹": "^1", "⁻": "^-",
     "≤": "<=", "≥": ">=", "≈": "~", "≠": "!=", "→": "->", "←": "<-", "∞": "inf", "√": "sqrt",
@@ -23,7 +23,7 @@ _PLAIN = {
     "─": "-", "━": "-", "╭": "+", "╮": "+", "╰": "+", "╯": "+", "•": "*",
     "\N{NO-BREAK SPACE}": " ", "\N{THIN SPACE}": " ", "\N{NARROW NO-BREAK SPACE}": " ",
 }  # fmt: skip
-#: Greek letters have their names as their plain letters.
+#: Greek letters are replaced by their names.
 _GREEK = "GREEK SMALL LETTER ", "GREEK CAPITAL LETTER "
 _CLOSED_PIPE = (errno.EPIPE, errno.ESHUTDOWN)
 
@@ -34,12 +34,13 @@ class Guarded(io.TextIOBase):
     Parameters
     ----------
     stream
-        The stream behind it; None for none, which swallows everything.
+        The underlying stream; None to discard all output.
 
     Attributes
     ----------
     trouble
-        Why the stream refused its content; None if it did not, or if its reader had enough.
+        Error with which the stream refused its content; None without an error, and for a pipe that
+        its reader has closed.
     """
 
     def __init__(self, stream: TextIO | None) -> None:
@@ -48,34 +49,34 @@ class Guarded(io.TextIOBase):
 
     @property
     def encoding(self) -> str:  # type: ignore[override]
-        """The encoding of the stream behind it."""
+        """The encoding of the underlying stream."""
         return getattr(self._stream, "encoding", None) or "utf-8"
 
     def writable(self) -> bool:
-        """Return True: it takes everything."""
+        """Return True, since writing never fails."""
         return True
 
     def isatty(self) -> bool:
-        """Return whether a terminal is behind it."""
+        """Return True if the underlying stream is a terminal."""
         try:
             return self._stream is not None and self._stream.isatty()
         except (OSError, ValueError):
             return False
 
     def fileno(self) -> int:
-        """Return the number of the file behind it."""
+        """Return the file descriptor of the underlying stream."""
         if self._stream is None:
             raise io.UnsupportedOperation("there is no file behind this stream")
         return self._stream.fileno()
 
     def write(self, text: str) -> int:
-        """Write a text, in plain letters where the encoding lacks others."""
-        told = printable(text, self.encoding)
-        self._attempt(lambda stream: stream.write(told))
+        """Write a text; characters that the encoding lacks are replaced."""
+        encodable = printable(text, self.encoding)
+        self._attempt(lambda stream: stream.write(encodable))
         return len(text)
 
     def flush(self) -> None:
-        """Hand on what is buffered."""
+        """Flush the underlying stream."""
         self._attempt(lambda stream: stream.flush())
 
     def _attempt(self, act: Callable[[TextIO], object]) -> None:
@@ -89,12 +90,20 @@ class Guarded(io.TextIOBase):
             _discard_the_rest(self._stream)
             self._stream = None
         except ValueError:
-            # Closed by whoever has called us.
+            # The caller has closed the stream.
             self._stream = None
 
 
 def printable(text: str, encoding: str) -> str:
-    """Return a text with plain letters in place of those that an encoding does not have."""
+    """Return a text with plain letters in place of characters that an encoding lacks.
+
+    Parameters
+    ----------
+    text
+        The text.
+    encoding
+        Name of the encoding.
+    """
     try:
         text.encode(encoding)
     except UnicodeEncodeError:
@@ -103,23 +112,23 @@ def printable(text: str, encoding: str) -> str:
 
 
 def out() -> Guarded:
-    """Return standard output; standard error in its place if there is none."""
+    """Return standard output, guarded; standard error if standard output is closed."""
     return _guarded(sys.stdout if _is_open(sys.stdout) else sys.stderr)
 
 
 def err() -> Guarded:
-    """Return standard error; what swallows everything if there is none."""
+    """Return standard error, guarded; a stream that discards all output if it is closed."""
     return _guarded(sys.stderr)
 
 
 @contextmanager
 def guarded_streams() -> Iterator[Guarded]:
-    """Guard standard output and standard error for all who write to them.
+    """Replace standard output and standard error by guarded streams.
 
     Yields
     ------
     Guarded
-        Standard output, whose `trouble` tells at the end whether it took its content.
+        Standard output; its `trouble` is set if it refused its content.
     """
     _occupy_the_first_files()
     before = sys.stdout, sys.stderr
@@ -145,7 +154,7 @@ def _plain(letter: str, encoding: str) -> str:
     try:
         letter.encode(encoding)
     except UnicodeEncodeError:
-        plain = _PLAIN.get(letter) or _greek(letter) or unicodedata.normalize("NFKD", letter)
+        plain = _REPLACEMENTS.get(letter) or _greek(letter) or unicodedata.normalize("NFKD", letter)
         return plain.encode(encoding, "ignore").decode(encoding) or "?"
     return letter
 
@@ -156,18 +165,18 @@ def _greek(letter: str) -> str:
 
 
 def _discard_the_rest(stream: TextIO) -> None:
-    """Send what is left in a buffer nowhere: Python would complain of it again at its end."""
+    """Redirect buffered output to the null device; Python would fail on it again at its end."""
     with suppress(OSError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, stream.fileno())
-        os.close(nowhere)
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, stream.fileno())
+        os.close(null)
 
 
 def _occupy_the_first_files() -> None:
-    """Open nothing in the place of streams that are closed.
+    """Open the null device in place of closed standard streams.
 
-    The next file that is opened would get the number of standard error, and whatever a library
-    complains of would be written into it.
+    Otherwise the next opened file would get the descriptor of standard error, and messages of
+    libraries would be written into it.
     """
     for number in range(3):
         try:

@@ -1,22 +1,22 @@
-"""What texts and answers tell of the units of their numbers; a filament's go without saying."""
+"""Units in texts and answers; the units of a filament are not repeated."""
 
 from collections.abc import Collection, Mapping
 
 from undula.models.units import FILAMENT_UNITS, Units
 
-#: What the letters in further units of force mean.
+#: Meaning of the letters in further units of force.
 _LETTERS = {"K/l": "l = L/N", "B/L^2": "B = K l of the filament it stands for"}
 
 
 def units_lines(names: Mapping[str, str], further: Collection[str] = ()) -> list[str]:
-    """Return the line below the heading of a text that names its units; none for a filament.
+    """Return the line with the units below the heading of a text; no line for a filament.
 
     Parameters
     ----------
     names
-        Units by quantity, as `Units.names` gives them.
+        Units by quantity, as `Units.names` returns them.
     further
-        Further units of force that the text tells.
+        Further units of force in the text.
     """
     if names == FILAMENT_UNITS.names():
         return []
@@ -26,16 +26,16 @@ def units_lines(names: Mapping[str, str], further: Collection[str] = ()) -> list
 
 
 def force_in(units: Units, force: float | None, owner: str = "") -> dict[str, dict[str, float]]:
-    """Return the key of an answer that holds a force in further units; none where there are none.
+    """Return the entry of an answer with a force in further units; empty without such units.
 
     Parameters
     ----------
     units
         Units of the model.
     force
-        A force, or None if there is none.
+        A force, or None.
     owner
-        What stands before the key's name, such as "hopf_".
+        Prefix of the key, such as "hopf_".
     """
-    told = {} if force is None else units.force_in(force)
-    return {f"{owner}force_in": told} if told else {}
+    further = {} if force is None else units.force_in(force)
+    return {f"{owner}force_in": further} if further else {}

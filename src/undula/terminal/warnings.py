@@ -1,4 +1,4 @@
-"""Doubts about stored results that a command has read, told beside its answer."""
+"""Warnings on stored results that a command has read, given with its answer."""
 
 import warnings
 from collections.abc import Iterator
@@ -10,16 +10,16 @@ from undula.storage.unchecked import StoredWarning
 
 
 @contextmanager
-def warnings_told() -> Iterator[None]:
-    """Tell in the end of each stored result that it is not known to be whole, once.
+def stored_warnings_noticed() -> Iterator[None]:
+    """Give notice of each different `StoredWarning` once, at the end of the context.
 
-    Where a command is refused, its one sentence is all that is told.
+    After an `InputError` no notice is given, since the error is reported in a single sentence.
     """
-    show, told = warnings.showwarning, dict[str, None]()
+    show, sentences = warnings.showwarning, dict[str, None]()
 
     def keep(message: Warning | str, category: type[Warning], *rest: Any, **named: Any) -> None:
         if issubclass(category, StoredWarning):
-            told[str(message)] = None
+            sentences[str(message)] = None
         else:
             show(message, category, *rest, **named)
 
@@ -29,13 +29,13 @@ def warnings_told() -> Iterator[None]:
         try:
             yield
         except InputError:
-            told.clear()
+            sentences.clear()
             raise
         finally:
-            _tell(tuple(told))
+            _notify(tuple(sentences))
 
 
-def _tell(sentences: tuple[str, ...]) -> None:
+def _notify(sentences: tuple[str, ...]) -> None:
     from undula.terminal.output import notice
 
     for sentence in sentences:

@@ -1,4 +1,4 @@
-"""Figures and movies of results: pure functions, and the only users of plotting libraries."""
+"""Figures, movies and pages of results; the only users of plotting libraries."""
 
 from undula.views.branches.bifurcation import bifurcation_diagram
 from undula.views.linear.growth import growth_figure

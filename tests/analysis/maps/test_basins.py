@@ -8,7 +8,7 @@ import xarray as xr
 
 import undula as un
 from refusal import complaint
-from small_studies import done, study_of
+from small_sweeps import done, sweep_of
 from sweeps import coded, made_up
 from undula.analysis.maps.basins import basins, wilson_interval
 from undula.views import basin_diagram
@@ -161,7 +161,7 @@ def test_where_starts_end_is_what_the_paper_says_except_where_two_states_are_sta
 ) -> None:
     # Ling, Guo & Kanso (2018), section on the tip force: below the second transition every start
     # out of a plane comes to spin, beyond it every start comes to flap.
-    found = basins(done(study_of(tmp_path, OF_TWENTY), tmp_path / "s.zarr"))["fraction"]
+    found = basins(done(sweep_of(tmp_path, OF_TWENTY), tmp_path / "s.zarr"))["fraction"]
     assert found.sel({"load.force": 100.0, "verdict": "spinning"}) == 1.0
     assert found.sel({"load.force": 250.0, "verdict": "planar flapping"}) == 1.0
     # Between the forces at which flapping is gained and spinning is lost it depends on the start.

@@ -22,7 +22,7 @@ from undula.analysis.maps.stability_intervals import StabilityIntervals, straigh
 from undula.analysis.solvers.thresholds import threshold
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning
-from undula.sweeps.boundary_cache import NAME, keep_borders, kept_columns
+from undula.sweeps.boundary_cache import NAME, read_boundaries, write_boundaries
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 LOW = un.Filament(segments=8, load=un.PointLoad(75.0, position=0.4))
@@ -274,28 +274,28 @@ def test_borders_over_no_axis_of_the_store_are_refused() -> None:
 
 def test_borders_are_kept_and_read_again(tmp_path: Path) -> None:
     store = sweep()
-    assert kept_columns(tmp_path, store) == []
+    assert read_boundaries(tmp_path, store) == []
     for borders in (of_eight(), over_position(), made_borders()):
-        keep_borders(tmp_path, store, borders)
-        assert tuple(kept_columns(tmp_path, store)) == borders.columns
+        write_boundaries(tmp_path, store, borders)
+        assert tuple(read_boundaries(tmp_path, store)) == borders.columns
 
 
 def test_columns_are_kept_before_all_of_them_are_there(tmp_path: Path) -> None:
     borders = over_position()
     some = [None, *borders.columns[1:]]
-    keep_borders(tmp_path, sweep(), replace(borders, columns=()), some)
-    assert kept_columns(tmp_path, sweep()) == some
+    write_boundaries(tmp_path, sweep(), replace(borders, columns=()), some)
+    assert read_boundaries(tmp_path, sweep()) == some
 
 
 @pytest.mark.parametrize("content", ["", "{", "[1]", '{"about": {}}'])
 def test_kept_borders_of_something_else_are_passed_over(tmp_path: Path, content: str) -> None:
     (tmp_path / NAME).write_text(content, encoding="utf-8")
-    assert kept_columns(tmp_path, sweep()) == []
+    assert read_boundaries(tmp_path, sweep()) == []
 
 
 def test_borders_of_another_study_are_not_used(tmp_path: Path) -> None:
-    keep_borders(tmp_path, sweep(), made_borders())
-    other = sweep().assign_attrs(study='{"model": {"segments": 20}}')
-    assert kept_columns(tmp_path, other) == []
+    write_boundaries(tmp_path, sweep(), made_borders())
+    other = sweep().assign_attrs(sweep='{"model": {"segments": 20}}')
+    assert read_boundaries(tmp_path, other) == []
     part = sweep().isel({"load.force": slice(0, 3)})
-    assert kept_columns(tmp_path, part) == []
+    assert read_boundaries(tmp_path, part) == []

@@ -10,7 +10,7 @@ import pytest
 
 import undula as un
 from refusal import complaint
-from small_studies import done, study_of
+from small_sweeps import done, sweep_of
 from undula.analysis.observables.shapes import displacement
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.checkpoint import resume
@@ -21,7 +21,7 @@ from undula.analysis.runs.settling import MotionRates
 from undula.analysis.runs.stop_rule import TIGHT_RTOL
 from undula.analysis.states.relative_equilibrium import Disturbances
 from undula.numerics.integration.system import RATES
-from undula.sweeps.point import point
+from undula.sweeps.point import point_record
 
 #: As coarse as the maps are that such runs are for.
 COARSE = 1e-4
@@ -258,10 +258,10 @@ values = [30.0, 75.0, 178.0, 250.0]
 
 
 def test_what_runs_do_not_tell_is_told_by_the_one_stable_state(tmp_path: Path) -> None:
-    kept = done(study_of(tmp_path, SHORT.format(undecided="keep")), tmp_path / "kept.zarr")
+    kept = done(sweep_of(tmp_path, SHORT.format(undecided="keep")), tmp_path / "kept.zarr")
     assert set(kept["verdict"].values.ravel()) == {"undecided"}
     assert "decided_by" not in kept
-    stored = done(study_of(tmp_path, SHORT.format(undecided="solve")), tmp_path / "solved.zarr")
+    stored = done(sweep_of(tmp_path, SHORT.format(undecided="solve")), tmp_path / "solved.zarr")
     # At 178 both spinning and flapping are stable.
     assert stored["verdict"].values.ravel().tolist() == [
         "straight",
@@ -289,14 +289,14 @@ def test_a_run_that_tells_is_not_asked_about() -> None:
         "time": {"until": "solved", "rtol": COARSE},
     }
     job = {"tables": tables, "label": "runs", "keep": "verdict", "undecided": "solve"}
-    record = point(job)
+    record = point_record(job)
     assert (record["verdict"], record["decided_by"]) == ("spinning", "run")
     assert record["ending"] == "solved"
 
 
 def test_solved_states_are_not_asked_twice(tmp_path: Path) -> None:
     text = SHORT.format(undecided="solve").replace("[study]", '[study]\nlabel = "solved"')
-    assert complaint(lambda: study_of(tmp_path, text)) == (
+    assert complaint(lambda: sweep_of(tmp_path, text)) == (
         "study.undecided = 'solve' has no meaning for study.label = 'solved'; use study.label ="
         " 'runs' or remove study.undecided"
     )

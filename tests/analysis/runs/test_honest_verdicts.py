@@ -15,7 +15,7 @@ import pytest
 import undula as un
 from pages import ROOT
 from refusal import complaint
-from small_studies import done, study_of
+from small_sweeps import done, sweep_of
 from undula.analysis.linear.leading_rate import leading_rate
 from undula.analysis.ramps.ramp import Ramp, ramp
 from undula.analysis.regimes import names, names_without_symmetry
@@ -253,15 +253,15 @@ values = [20.0, 45.0, 75.0]
 
 @pytest.mark.parametrize("until", ["settled", "solved"])
 def test_points_of_a_study_keep_to_the_same_rules(tmp_path: Path, until: str) -> None:
-    stored = done(study_of(tmp_path, BELOW.format(until=until)), tmp_path / "s.zarr")
+    stored = done(sweep_of(tmp_path, BELOW.format(until=until)), tmp_path / "s.zarr")
     verdicts = stored["verdict"].values.ravel()
     assert verdicts[1:].tolist() == ["undecided", "undecided"]
     assert all("unstable" in reason for reason in stored["reason"].values.ravel()[1:])
 
 
 def test_undecided_points_can_be_decided_by_the_solved_states(tmp_path: Path) -> None:
-    study = study_of(tmp_path, BELOW.format(until="settled"), "study.undecided=solve")
-    verdicts = done(study, tmp_path / "s.zarr")["verdict"].values.ravel().tolist()
+    sweep = sweep_of(tmp_path, BELOW.format(until="settled"), "study.undecided=solve")
+    verdicts = done(sweep, tmp_path / "s.zarr")["verdict"].values.ravel().tolist()
     assert verdicts == ["straight", "spinning", "spinning"]
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from undula.arrays import Array
 from undula.errors import InputError
-from undula.schema.sweep_axes import DONE, TRY, verdicts_of
+from undula.schema.sweep_axes import DONE, REPLICATE, verdicts_of
 
 #: Dimension of the verdicts.
 VERDICT = "verdict"
@@ -94,8 +94,8 @@ def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
     names, counts = np.unique(verdicts.values[verdicts.values != ""], return_counts=True)
     ordered = names[np.argsort(-counts, kind="stable")]
     labels = xr.DataArray(ordered, dims=VERDICT, coords={VERDICT: ordered})
-    hits = (verdicts == labels).sum(TRY)
-    tries = (store["status"] == DONE).sum(TRY)
+    hits = (verdicts == labels).sum(REPLICATE)
+    tries = (store["status"] == DONE).sum(REPLICATE)
     low, high = (
         xr.DataArray(end, coords=hits.coords, dims=hits.dims)
         for end in wilson_interval(hits.values, (tries + 0 * hits).values, confidence)

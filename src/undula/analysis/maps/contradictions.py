@@ -11,7 +11,7 @@ from undula.analysis.maps.stability_intervals import StabilityIntervals
 from undula.analysis.parameters import FORCE
 from undula.analysis.regimes.verdict import UNDECIDED
 from undula.errors import InputError
-from undula.schema.sweep_axes import TRY, axes_of, verdicts_of
+from undula.schema.sweep_axes import REPLICATE, axes_of, verdicts_of
 
 #: Kinds of solved states by the verdict that a run of them gets.
 KINDS: Mapping[str, str] = {
@@ -92,7 +92,9 @@ def contradictions(
         sentence, edges = _contradiction(verdict, force, column)
         if sentence is not None:
             close = any(abs(force - edge) <= near * edge for edge in edges)
-            where = ", ".join(f"{name} = {value:g}" for name, value in place.items() if name != TRY)
+            where = ", ".join(
+                f"{name} = {value:g}" for name, value in place.items() if name != REPLICATE
+            )
             result.append(Disagreement(place, verdict, f"{verdict} at {where}: {sentence}", close))
     return tuple(result)
 

@@ -1,4 +1,4 @@
-"""Borders of a stored study: those that are kept beside it, the others solved for by workers."""
+"""Stability boundaries of a stored sweep, read from its cache or solved for by workers."""
 
 from collections import deque
 from pathlib import Path
@@ -15,56 +15,57 @@ from undula.storage.name_lock import locked
 from undula.sweeps.boundary_cache import (
     NAME,
     Column,
-    columns_of,
-    keep_borders,
-    kept_columns,
+    read_boundaries,
+    solve_columns,
     tables_of,
+    write_boundaries,
 )
 from undula.sweeps.workers import DiedError, LostError, pool
 from undula.terminal.output import notice
 from undula.terminal.progress import swept
 
-#: Seconds to wait for a column before looking at Ctrl-C again.
+#: Time to wait for a column before Ctrl-C is checked again [s].
 _PATIENCE = 0.2
 
 
-def borders_of(path: Path, store: xr.Dataset) -> StabilityBoundaries | None:
-    """Return the borders of a study; None if not all of them are there, as after Ctrl-C.
+def boundaries_of(path: Path, store: xr.Dataset) -> StabilityBoundaries | None:
+    """Return the stability boundaries of a sweep; None if some are missing, as after Ctrl-C.
 
     Parameters
     ----------
     path
-        The study's folder, in which every column is kept as soon as it is there.
+        Folder of the sweep, in which every column is cached as soon as it is solved.
     store
-        What was chosen of the study.
+        The selected part of the sweep.
 
     Raises
     ------
     InputError
-        The study does not vary the force, or its folder cannot be written.
+        The sweep does not vary the force, or its folder cannot be written.
     """
     if FORCE not in axes_of(store):
         raise InputError(
             f"--borders are values of {FORCE}, which {path} does not vary; leave them out"
         )
-    parameter = next((name for name in varied(store) if _is_of_the_model(name)), None)
+    parameter = next((name for name in varied(store) if _changes_the_model(name)), None)
     values = (float("nan"),) if parameter is None else tuple(store[parameter].values.tolist())
     up_to = float(store[FORCE].values.max())
-    columns = kept_columns(path, store) or [None] * len(values)
-    why = "interrupted"
+    columns = read_boundaries(path, store) or [None] * len(values)
+    cause = "interrupted"
     if None in columns:
-        job = {"tables": tables_of(store), "parameter": parameter, "up_to": up_to}
+        request = {"tables": tables_of(store), "parameter": parameter, "up_to": up_to}
+        empty = StabilityBoundaries(parameter, values, up_to, ())
         busy = f"another undula solves for the borders of {path}; wait for it"
         try:
             with locked(path / NAME, busy):
-                _solve(path, store, StabilityBoundaries(parameter, values, up_to, ()), job, columns)
+                _solve(path, store, empty, request, columns)
         except LostError as lost:
-            why = lost.told
-    done = [column for column in columns if column is not None]
-    if len(done) == len(columns):
-        return StabilityBoundaries(parameter, values, up_to, tuple(done))
+            cause = lost.text
+    solved = [column for column in columns if column is not None]
+    if len(solved) == len(columns):
+        return StabilityBoundaries(parameter, values, up_to, tuple(solved))
     notice(
-        f"{why} with {len(columns) - len(done)} of {len(columns)} columns of borders to go;"
+        f"{cause} with {len(columns) - len(solved)} of {len(columns)} columns of borders to go;"
         f" those so far are in {path}, the same command goes on"
     )
     return None
@@ -74,23 +75,23 @@ def _solve(
     path: Path,
     store: xr.Dataset,
     empty: StabilityBoundaries,
-    job: dict[str, Any],
+    request: dict[str, Any],
     columns: list[Column | None],
 ) -> None:
-    """Fill in the columns that are missing, until Ctrl-C, and keep each."""
+    """Fill in and cache the missing columns, until Ctrl-C."""
     missing = deque(index for index, column in enumerate(columns) if column is None)
     count = len(missing)
     with (
         interruptible() as interrupted,
         pool(None, None, notice) as workers,
-        swept("solving for borders", len(columns), count, "columns") as tell,
+        swept("solving for borders", len(columns), count, "columns") as show,
     ):
         while missing or workers.busy:
             if interrupted():
                 return
             while missing and workers.has_room:
                 index = missing.popleft()
-                workers.give(index, columns_of, [job | {"value": empty.values[index]}])
+                workers.give(index, solve_columns, [request | {"value": empty.values[index]}])
             for index, outcome in workers.come_back(_PATIENCE):
                 if isinstance(outcome, DiedError):
                     raise InputError(
@@ -98,10 +99,10 @@ def _solve(
                         f" {empty.values[index]:g}, perhaps for want of memory; free some"
                     )
                 (columns[index],) = outcome
-                keep_borders(path, store, empty, columns)
-                tell(columns.count(None), 0)
+                write_boundaries(path, store, empty, columns)
+                show(columns.count(None), 0)
 
 
-def _is_of_the_model(name: str) -> bool:
-    """Tell whether an axis changes the model: starts and times do not move its borders."""
+def _changes_the_model(name: str) -> bool:
+    """Return True for an axis of model or load; starts and times do not move the boundaries."""
     return name != FORCE and name.split(".")[0] in ("model", "load")

@@ -1,4 +1,4 @@
-"""Figures and movies of stored runs, on disk."""
+"""Files of figures and movies."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,16 +23,26 @@ from undula.views import (
 )
 from undula.views.common.figure_file import figure_bytes
 
+#: Endings of figure files.
 FORMATS = (".png", ".pdf", ".svg")
 
 
 def beside(path: Path, ending: str, addition: str = "") -> Path:
-    """Return the name beside a file or folder that has another ending.
+    """Return a name in the same folder as a file or folder, with another ending.
+
+    Parameters
+    ----------
+    path
+        The file or folder.
+    ending
+        The new ending.
+    addition
+        Text before the ending.
 
     Raises
     ------
     InputError
-        There is nothing beside it.
+        The path is the root of the file system.
     """
     named = path if path.name not in ("", "..") else path.resolve()
     if not named.name:
@@ -41,12 +51,12 @@ def beside(path: Path, ending: str, addition: str = "") -> Path:
 
 
 def figure_path(result: Path, out: Path | None) -> Path:
-    """Return where the figure of a result goes.
+    """Return the file of the figure of a result, by default next to it.
 
     Raises
     ------
     InputError
-        The ending of `out` is none that a figure can have.
+        The ending of `out` belongs to no format of figures.
     """
     path = out or beside(result, FORMATS[0])
     check_figure_name("--out", path)
@@ -54,12 +64,12 @@ def figure_path(result: Path, out: Path | None) -> Path:
 
 
 def check_figure_name(option: str, path: Path) -> None:
-    """Refuse a name that no figure can have.
+    """Refuse a name whose ending belongs to no format of figures.
 
     Raises
     ------
     InputError
-        Its ending belongs to no format of figures.
+        The ending is wrong; the sentence names the option.
     """
     if path.suffix.lower() not in FORMATS:
         raise InputError(
@@ -69,7 +79,7 @@ def check_figure_name(option: str, path: Path) -> None:
 
 
 def movie_path(result: Path, out: Path | None) -> Path:
-    """Return where the movie of a result goes.
+    """Return the file of the movie of a result, by default next to it.
 
     Raises
     ------
@@ -99,7 +109,7 @@ def save_figure(figure: Any, path: Path, claim: Claim) -> None:
     Raises
     ------
     InputError
-        There is something that is not to be replaced, or the file cannot be written.
+        The claim does not allow to replace an existing file, or it cannot be written.
     """
     claim.write(path, figure_bytes(figure, path.suffix))
 
@@ -110,7 +120,7 @@ def check_straight(parameter: str) -> None:
     Raises
     ------
     InputError
-        The parameter is another one.
+        The parameter is not the force.
     """
     if parameter != "load.force":
         raise InputError(
@@ -122,7 +132,7 @@ def check_straight(parameter: str) -> None:
 def draw_straight(
     branch: StraightBranch, path: Path, claim: Claim, *, title: str, units: Mapping[str, str]
 ) -> None:
-    """Draw growth rate and frequency of the straight state against the force into a file.
+    """Draw growth rate and frequency of the straight state over the force into a file.
 
     Raises
     ------
@@ -151,7 +161,7 @@ def draw_branch(
 def draw_thresholds(
     name: str,
     along: tuple[str, Sequence[float]],
-    found: Sequence[Threshold],
+    thresholds: Sequence[Threshold],
     path: Path,
     claim: Claim,
     *,
@@ -167,8 +177,8 @@ def draw_thresholds(
     """
     values = np.asarray(along[1], dtype=float)
     forces, errors = (
-        np.array([np.nan if getattr(one, what) is None else getattr(one, what) for one in found])
-        for what in ("value", "error")
+        np.array([getattr(threshold, field) for threshold in thresholds], dtype=float)
+        for field in ("value", "error")
     )
     curves = [(name, values, forces, errors)]
     figure = threshold_curves(curves, parameter=along[0], title=title, units=units)
@@ -181,10 +191,10 @@ def draw_movie(stored: xr.Dataset, path: Path, claim: Claim) -> None:
     Raises
     ------
     InputError
-        The run has too few samples, there is something that is not to be replaced, the file cannot
-        be written, or the encoder fails.
+        The run has too few samples, the claim does not allow to replace an existing file, the file
+        cannot be written, or the encoder fails.
     """
-    claim.check(path)
+    claim.check_writable(path)
     try:
         with meter("drawing the movie") as show:
             movie(

@@ -1,4 +1,4 @@
-"""`undula find`: a state solved for, in plain JSON types and for people."""
+"""`undula find`: solve for a state, and answer in plain JSON types and for people."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from undula.analysis.states.extrapolation import Converged, links_are_body
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
 from undula.analysis.states.records import Equilibrium, Spinning
-from undula.app.commands.find_start import Beginning
+from undula.app.commands.find_start import SearchStart
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, CURE
 from undula.terminal.numbers import with_error as with_digits
@@ -16,7 +16,7 @@ from undula.terminal.output import Answer
 from undula.terminal.progress import searching
 from undula.terminal.units_text import force_in, units_lines
 
-#: Units of what a state tells, by the beginning of its name; of energies they are the model's.
+#: Units of quantities by the beginning of their names; those of energies depend on the model.
 _UNITS = {
     "frequency": "cycles per T",
     "tip_radius": "L",
@@ -27,38 +27,47 @@ _UNITS = {
 }
 
 
-def find(asked: Beginning, kind: str, *, converge: bool) -> Answer:
-    """Solve for a state; in the limit of many links if asked to.
+def find_state(start: SearchStart, kind: str, *, converge: bool) -> Answer:
+    """Solve for a state.
+
+    Parameters
+    ----------
+    start
+        The model and the start of the search.
+    kind
+        Name of the kind of state.
+    converge
+        If true, extrapolate to many links.
 
     Raises
     ------
     InputError
-        There is no such kind, or the model has no limit of many links.
+        The kind is unknown, or the model has no limit of many links.
     """
-    model, title, chosen = asked.model, asked.title, kind_by_name(kind)
-    with searching(f"finding {kind}") as tell:
-        found: Any = asked.first()
-        if converge and not isinstance(found, NotFound):
-            found = extrapolate(model, kind, found, progress=tell)
-        elif found is None:
-            found = chosen.find(model)
-    if isinstance(found, NotFound):
-        return not_found(found, f"{title}: {kind}", model.units)
+    model, title, solver = start.model, start.title, kind_by_name(kind)
+    with searching(f"finding {kind}") as show:
+        result: Any = start.motion()
+        if converge and not isinstance(result, NotFound):
+            result = extrapolate(model, kind, result, progress=show)
+        elif result is None:
+            result = solver.find(model)
+    if isinstance(result, NotFound):
+        return not_found(result, f"{title}: {kind}", model.units)
     answer = (
-        _limit_answer(found) if isinstance(found, Converged) else state_answer(with_error(found))
+        _limit_answer(result) if isinstance(result, Converged) else state_answer(with_error(result))
     )
     return Answer(answer, _text(title, answer, body=links_are_body(model)))
 
 
-def not_found(reason: NotFound, title: str, units: Units) -> Answer:
-    """Return the answer that there is no state, with the advice what to try."""
+def not_found(failure: NotFound, title: str, units: Units) -> Answer:
+    """Return the answer on a failed search, with its advice."""
     answer = {
         "status": "not found",
         "units": units.names(),
-        "reason": reason.reason,
-        "residual": reason.residual,
+        "reason": failure.reason,
+        "residual": failure.residual,
     }
-    lines = [f"{title} not found: {reason.reason}", *units_lines(units.names())]
+    lines = [f"{title} not found: {failure.reason}", *units_lines(units.names())]
     return Answer(answer, "\n".join(lines))
 
 
@@ -91,8 +100,8 @@ def state_answer(state: Solved) -> dict[str, Any]:
             "turn": state.angle,
             "time_error": state.time_error,
         }
-        return shared | {"kind": "periodic"} | swinging | period
-    return shared | {
+        return {"kind": "periodic"} | swinging | period
+    return {
         "kind": "flapping",
         **swinging,
         "leading_rate_in_plane": state.leading_rate_in_plane,
@@ -102,7 +111,7 @@ def state_answer(state: Solved) -> dict[str, Any]:
 
 
 def _limit_answer(limit: Converged[Any]) -> dict[str, Any]:
-    """Return what a state converges to, named as for a single number of links."""
+    """Return the limit of a state in plain JSON types, under the keys of a single state."""
     answer = state_answer(limit.finest)
     for name, value in limit.values.items():
         owner, _, part = name.rpartition("_")
@@ -131,20 +140,20 @@ def _text(title: str, answer: dict[str, Any], *, body: bool) -> str:
     errors = answer.get("errors", {}) | {"frequency": answer["error"]}
     word = "stable" if answer["stable"] else "unstable"
     lines = [f"{title}: {answer['kind']}, {word}", *units_lines(answer["units"])]
-    known = _UNITS | {"bending_energy": answer["units"]["energy"]}
+    by_name = _UNITS | {"bending_energy": answer["units"]["energy"]}
     for name, value in answer.items():
-        unit = next((unit for start, unit in known.items() if name.startswith(start)), None)
+        unit = next((unit for start, unit in by_name.items() if name.startswith(start)), None)
         if unit is None or value is None:
             continue
         if isinstance(value, dict):
             parts = [
-                f"{part} {with_digits(one, errors.get(f'{name}_{part}'))}"
-                for part, one in value.items()
+                f"{part} {with_digits(number, errors.get(f'{name}_{part}'))}"
+                for part, number in value.items()
             ]
-            said = ", ".join(parts)
+            numbers = ", ".join(parts)
         else:
-            said = with_digits(value, errors.get(name))
-        lines.append(f"  {name.replace('_', ' '):<26} {said} {unit}")
+            numbers = with_digits(value, errors.get(name))
+        lines.append(f"  {name.replace('_', ' '):<26} {numbers} {unit}")
     lines.append(f"  {'links':<26} {_links(answer['links'], body=body)}")
     lines.append(f"  {'residual':<26} {answer['residual']:.1g}")
     return "\n".join(lines)

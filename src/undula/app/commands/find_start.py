@@ -1,4 +1,4 @@
-"""What the search for a state begins with: nothing, a stored run, or the seed of a run to make."""
+"""Start of the search for a state: none, a stored run, or the seed of a new run."""
 
 import json
 from collections.abc import Sequence
@@ -18,17 +18,18 @@ from undula.storage.run_file import load_result
 
 
 @dataclass(frozen=True)
-class Beginning:
-    """A model, what it is in words, and what the search for its state begins with.
+class SearchStart:
+    """A model and the start of the search for one of its states.
 
     Attributes
     ----------
     model : Model
     title : str
+        Model and load in a few words.
     run : (Model, Dataset) or None
-        A stored run with its own model, of which `model` may differ in numbers.
+        A stored run with its own model, from which `model` may differ in numbers.
     seed : int or None
-        Seed of the run that is made for want of one.
+        Seed of the run that is made without a stored one.
     """
 
     model: Model
@@ -36,42 +37,53 @@ class Beginning:
     run: tuple[Model, xr.Dataset] | None = None
     seed: int | None = None
 
-    def first(self) -> Periodic | NotFound | None:
-        """Return the motion that the run or the seed leads to, None if neither was given."""
+    def motion(self) -> Periodic | NotFound | None:
+        """Return the periodic motion that the run or the seed leads to, None without both."""
         if self.run is None:
             return None if self.seed is None else find_periodic(self.model, seed=self.seed)
         own, stored = self.run
-        found = find_periodic(own, stored)
-        if own == self.model or isinstance(found, NotFound):
-            return found
-        return find_periodic(self.model, found)
+        motion = find_periodic(own, stored)
+        if own == self.model or isinstance(motion, NotFound):
+            return motion
+        return find_periodic(self.model, motion)
 
 
-def beginning_of(
+def start_of_search(
     kind: str, file: Path | None, changes: Sequence[str], run: Path | None, seed: int | None
-) -> Beginning:
-    """Return what is asked: of the model of an input, or of that of a stored run with changes.
+) -> SearchStart:
+    """Return the start of a search in the model of an input, or in that of a stored run.
+
+    Parameters
+    ----------
+    kind
+        Name of the kind of state.
+    file, changes
+        The input file, None for the defaults, and changes of single keys.
+    run
+        File of a stored run; its model takes the place of the input.
+    seed
+        Seed of a new run.
 
     Raises
     ------
     InputError
-        The input is wrong, or the options do not go together.
+        The input is wrong, or the options exclude each other.
     """
     if kind != "periodic" and (run is not None or seed is not None):
         option = "--seed" if run is None else "--run"
         raise InputError(f"{option} is for periodic motions; leave it out for {kind}")
     if run is None:
         wanted = read_model_input(file, changes)
-        return Beginning(build_model(wanted), wanted.load_text, seed=seed)
+        return SearchStart(build_model(wanted), wanted.load_text, seed=seed)
     if file is not None or seed is not None:
         other = f"--seed {seed}" if file is None else file
         raise InputError(f"--run and {other} both say what to begin with; leave one of them out")
     stored = load_result(run)
     tables = json.loads(stored.attrs["input"])
-    mine = {name: tables[name] for name in ModelInput.model_fields if name in tables}
+    read = {name: tables[name] for name in ModelInput.model_fields if name in tables}
     try:
-        own = build_model(changed_tables(ModelInput, mine, ())[1])
+        own = build_model(changed_tables(ModelInput, read, ())[1])
     except InputError as error:
         raise InputError(f"{run} holds no input that a command could read: {error}") from error
-    wanted = changed_tables(ModelInput, mine, changes)[1]
-    return Beginning(build_model(wanted), wanted.load_text, run=(own, stored))
+    wanted = changed_tables(ModelInput, read, changes)[1]
+    return SearchStart(build_model(wanted), wanted.load_text, run=(own, stored))

@@ -19,7 +19,7 @@ from undula.errors import InputError
 from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.units import Units
-from undula.terminal.numbers import BODY, CURE, LINKS, told_of
+from undula.terminal.numbers import BODY, CURE, LINKS, with_error_of
 from undula.terminal.output import Answer
 from undula.terminal.progress import approached
 from undula.terminal.units_text import force_in, units_lines
@@ -222,7 +222,7 @@ def _bifurcation_line(point: dict[str, Any], units: Units) -> str:
     place = f"{point['value']:.10g} {unit}".rstrip()
     if point["error"] is not None or point["error_of"] == LINKS:
         cure = "" if "not_converged" in point else CURE
-        place = told_of(point["value"], point["error"], point, unit, cure).rstrip()
+        place = with_error_of(point["value"], point["error"], point, unit, cure).rstrip()
     place += units.beside(point["value"]) if further else ""
     second = point["second_frequency"]
     second_text = f", second frequency {second:.6g}" if second is not None else ""

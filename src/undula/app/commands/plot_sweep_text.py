@@ -1,4 +1,4 @@
-"""What `undula plot` tells of a stored study, in plain JSON types and for people."""
+"""The answer of `undula plot` on a stored sweep, in plain JSON types and for people."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,17 +16,29 @@ from undula.schema.sweep_axes import DONE, FAILED, verdicts_of
 from undula.sweeps.boundary_cache import tables_of
 from undula.terminal.numbers import BODY, LINKS
 
-# So many lines of each kind are told to people; the JSON answer has all.
+#: Most lines of each kind in the answer for people; the JSON answer has all.
 _MOST_LINES = 20
 
 
 def diagram_answer(
     store: xr.Dataset,
-    borders: StabilityBoundaries | None,
-    wrong: Sequence[Disagreement],
+    boundaries: StabilityBoundaries | None,
+    contradicting: Sequence[Disagreement],
     shares: xr.Dataset | None,
 ) -> dict[str, Any]:
-    """Return what is told of a study in plain JSON types."""
+    """Return the answer in plain JSON types.
+
+    Parameters
+    ----------
+    store
+        The selected part of a sweep.
+    boundaries
+        Solved stability boundaries, or None.
+    contradicting
+        Points that contradict the boundaries.
+    shares
+        Shares of verdicts at each point, as `undula.basins` returns them, or None.
+    """
     status, words = store["status"].values, verdicts_of(store).values
     answer: dict[str, Any] = {
         "status": "done",
@@ -35,24 +47,29 @@ def diagram_answer(
         "failed": int((status == FAILED).sum()),
         "verdicts": dict(Counter(str(word) for word in words[words != ""]).most_common()),
     }
-    if borders is not None:
+    if boundaries is not None:
         model = build_model(parse_input(tables_of(store)))
-        changing = borders.parameter in ("model.segments", "model.links")
+        changing = boundaries.parameter in ("model.segments", "model.links")
         answer |= {
-            "parameter": borders.parameter,
+            "parameter": boundaries.parameter,
             "links": None if changing else model.links,
             "error_of": BODY if links_are_body(model) else LINKS,
-            "borders": {name: list(_border(borders, name)) for name in BOUNDARIES},
+            "borders": {name: list(_boundary(boundaries, name)) for name in BOUNDARIES},
             "disagreements": [
-                {**one.at, "verdict": one.verdict, "near": one.near, "sentence": one.sentence}
-                for one in wrong
+                {
+                    **point.at,
+                    "verdict": point.verdict,
+                    "near": point.near,
+                    "sentence": point.sentence,
+                }
+                for point in contradicting
             ],
         }
     return answer if shares is None else answer | {"basins": list(_basins(shares))}
 
 
 def diagram_text(answer: Mapping[str, Any]) -> str:
-    """Return an answer for people."""
+    """Return the answer for people; `answer` is as `diagram_answer` returns it, with its figure."""
     missing = answer["points"] - answer["done"] - answer["failed"]
     counts = [f"{answer['done']} of {answer['points']} points done"]
     counts += [f"{answer['failed']} failed"] * bool(answer["failed"])
@@ -62,48 +79,48 @@ def diagram_text(answer: Mapping[str, Any]) -> str:
     if answer.get("error_of") == LINKS and answer["links"] is not None:
         lines.append(f"  borders of {answer['links']} links, as the runs are of")
     for name, points in answer.get("borders", {}).items():
-        lines += _some(f"{name}:", list(_border_lines(points, answer["parameter"])))
+        lines += _listed(f"{name}:", list(_boundary_lines(points, answer["parameter"])))
     if "disagreements" in answer:
-        lines += _disagreement_lines(answer["disagreements"])
-    shares = [told for told in answer.get("basins", ()) if len(told["verdicts"]) > 1]
-    if shares:
-        lines += _some("ends of several starts:", [_basin_line(told) for told in shares])
+        lines += _contradiction_lines(answer["disagreements"])
+    several = [basin for basin in answer.get("basins", ()) if len(basin["verdicts"]) > 1]
+    if several:
+        lines += _listed("ends of several starts:", [_basin_line(basin) for basin in several])
     return "\n".join(lines)
 
 
-def _border(borders: StabilityBoundaries, name: str) -> Iterator[dict[str, Any]]:
-    forces, errors = borders.curve(name)
-    for index, value in enumerate(borders.values):
-        known = bool(np.isfinite(forces[index]))
-        place = {} if borders.parameter is None else {borders.parameter: value}
+def _boundary(boundaries: StabilityBoundaries, name: str) -> Iterator[dict[str, Any]]:
+    forces, errors = boundaries.curve(name)
+    for index, value in enumerate(boundaries.values):
+        exists = bool(np.isfinite(forces[index]))
+        place = {} if boundaries.parameter is None else {boundaries.parameter: value}
         yield place | {
-            "force": float(forces[index]) if known else None,
-            "error": float(errors[index]) if known else None,
-            "reason": borders.why_no_boundary(name, index),
+            "force": float(forces[index]) if exists else None,
+            "error": float(errors[index]) if exists else None,
+            "reason": boundaries.why_no_boundary(name, index),
         }
 
 
 def _basins(shares: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield the shares of each point with answers, of the verdicts that occur there."""
+    """Yield the shares of the verdicts that occur, for each point with results."""
     axes = [str(name) for name in shares["tries"].dims]
     for index in np.ndindex(*(shares.sizes[name] for name in axes)):
-        here = shares.isel(dict(zip(axes, index, strict=True)))
-        if int(here["tries"]):
-            yield {name: float(here[name]) for name in axes} | {
-                "tries": int(here["tries"]),
+        point = shares.isel(dict(zip(axes, index, strict=True)))
+        if int(point["tries"]):
+            yield {name: float(point[name]) for name in axes} | {
+                "tries": int(point["tries"]),
                 "verdicts": {
-                    str(one["verdict"].values): {
-                        name: float(one[name]) for name in ("fraction", "low", "high")
+                    str(share["verdict"].values): {
+                        name: float(share[name]) for name in ("fraction", "low", "high")
                     }
-                    for one in (here.sel(verdict=name) for name in here["verdict"].values)
-                    if int(one["hits"])
+                    for share in (point.sel(verdict=name) for name in point["verdict"].values)
+                    if int(share["hits"])
                 },
             }
 
 
-def _border_lines(points: Sequence[Mapping[str, Any]], parameter: str | None) -> Iterator[str]:
+def _boundary_lines(points: Sequence[Mapping[str, Any]], parameter: str | None) -> Iterator[str]:
     if all(point["force"] is None for point in points):
-        # One reason stands for all.
+        # The reason is the same at all points.
         yield f"none: {points[0]['reason']}"
         return
     for point in points:
@@ -112,30 +129,29 @@ def _border_lines(points: Sequence[Mapping[str, Any]], parameter: str | None) ->
         yield f"{place}{force}"
 
 
-def _disagreement_lines(found: Sequence[Mapping[str, Any]]) -> list[str]:
-    near = sum(1 for one in found if one["near"])
-    if not found:
+def _contradiction_lines(points: Sequence[Mapping[str, Any]]) -> list[str]:
+    near = sum(1 for point in points if point["near"])
+    if not points:
         return ["  no point contradicts the solved states"]
     counts = (
-        f"points that contradict the solved states: {len(found)}, {near} of them next to a border"
+        f"points that contradict the solved states: {len(points)}, {near} of them next to a border"
     )
-    told = [one["sentence"] for one in found if not one["near"]]
-    return _some(counts, told)
+    return _listed(counts, [point["sentence"] for point in points if not point["near"]])
 
 
-def _basin_line(told: Mapping[str, Any]) -> str:
+def _basin_line(basin: Mapping[str, Any]) -> str:
     place = ", ".join(
-        f"{name} = {value:g}" for name, value in told.items() if name not in ("tries", "verdicts")
+        f"{name} = {value:g}" for name, value in basin.items() if name not in ("tries", "verdicts")
     )
     shares = ", ".join(
         f"{verdict} {share['fraction']:.0%} ({share['low']:.0%} to {share['high']:.0%})"
-        for verdict, share in told["verdicts"].items()
+        for verdict, share in basin["verdicts"].items()
     )
-    return f"{place}: {shares} of {told['tries']}"
+    return f"{place}: {shares} of {basin['tries']}"
 
 
-def _some(heading: str, lines: Sequence[str]) -> list[str]:
-    """Return lines below a heading, not too many of them."""
-    told = [f"  {heading}", *(f"    {line}" for line in lines[:_MOST_LINES])]
+def _listed(heading: str, lines: Sequence[str]) -> list[str]:
+    """Return at most `_MOST_LINES` lines below a heading."""
+    listed = [f"  {heading}", *(f"    {line}" for line in lines[:_MOST_LINES])]
     more = len(lines) - _MOST_LINES
-    return [*told, f"    and {more} more"] if more > 0 else told
+    return [*listed, f"    and {more} more"] if more > 0 else listed

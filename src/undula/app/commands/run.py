@@ -1,4 +1,4 @@
-"""A run from its first step to its stored result, kept safe on the way."""
+"""`undula run`: computation of a run, with its result stored at intervals."""
 
 import time
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from undula.analysis.runs.integrate import (
     with_exponents,
 )
 from undula.analysis.runs.run import Run
-from undula.app.commands.run_job import Job
+from undula.app.commands.run_job import RunJob
 from undula.errors import InputError
 from undula.interrupts import interruptible
 from undula.storage.run_file import write_run
@@ -22,31 +22,39 @@ from undula.terminal.meter import Meter, meter
 from undula.terminal.output import notice
 from undula.terminal.run_progress import far_too_long, pace, part_done
 
-#: Seconds between two times that the result so far is written.
+#: Time between two writings of the result so far [s].
 SAVE_EVERY = 20.0
-#: Writing takes at most this part of the time: a long run has a large file.
+#: Largest fraction of the time spent on writing, since long runs have large files.
 SAVING_SHARE = 0.1
 
 
 @dataclass(frozen=True)
 class Computed:
-    """Seconds that a run took, and why its Lyapunov exponents are missing if they were stopped."""
+    """Outcome of the computation of a run.
+
+    Attributes
+    ----------
+    seconds
+        Wall time.
+    without
+        Cause of missing Lyapunov exponents if they were stopped, else empty.
+    """
 
     seconds: float
     without: str
 
 
-def compute(job: Job, budget: float, *, lyapunov: bool) -> Computed:
-    """Carry a run on to its end, or until Ctrl-C or the budget stops it, and store its result.
+def compute(job: RunJob, budget: float, *, lyapunov: bool) -> Computed:
+    """Compute a run to its end, or until Ctrl-C or the budget stops it, and store its result.
 
     Parameters
     ----------
     job
-        The run; its file is replaced, every now and then and at the end.
+        The run; its file is replaced at intervals and at the end.
     budget
-        Seconds after which the run is ended with what it has, or its exponents are.
+        Wall time after which the run or its exponents are stopped [s].
     lyapunov
-        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
+        If true, compute Lyapunov exponents of any motion, not only of an irregular one.
 
     Raises
     ------
@@ -54,12 +62,12 @@ def compute(job: Job, budget: float, *, lyapunov: bool) -> Computed:
         The result cannot be written.
     """
     begun, simulation = time.monotonic(), job.simulation
-    # Also while the result is stored: a signal may come twice.
+    # The context includes the storing of the result, since a signal may come twice.
     with interruptible(), meter("running") as show, compilation_announced(notice):
         watcher = _Watcher(job, show)
         judged = carry_on(simulation, budget=budget, progress=watcher)
         judged = judged or Run.of(simulation, Exponents.NEVER)
-        store(job, judged)  # exponents may take long, and something may end that
+        store(job, judged)  # the exponents may take long and be interrupted
         wanted = lyapunov or (judged.lyapunov is None and judged.verdict.late is not None)
         run, stopped = judged, False
         if wanted and simulation.ending not in CUT_SHORT_ENDINGS:
@@ -71,17 +79,17 @@ def compute(job: Job, budget: float, *, lyapunov: bool) -> Computed:
     return Computed(time.monotonic() - begun, run.without_lyapunov if stopped else "")
 
 
-def store(job: Job, run: Run) -> None:
-    """Write the result that a run has come to so far, whole."""
+def store(job: RunJob, run: Run) -> None:
+    """Write the result of a run so far, whole or not at all."""
     dataset = dataset_of(run, inputs=job.wanted.dump(), load=job.wanted.load_text)
     write_run(job.result, dataset, run.checkpoint, overwrite=True)
 
 
 @dataclass
 class _Watcher:
-    """Shows where a run is, says if it takes days, and stores it every now and then."""
+    """Shows the progress of a run, gives notice if it takes days, and stores it at intervals."""
 
-    job: Job
+    job: RunJob
     show: Meter
     first: Progress | None = None
     warned: bool = False
@@ -89,22 +97,22 @@ class _Watcher:
 
     def __call__(self, progress: Progress) -> None:
         if progress.exponents is not None:
-            what, part = progress.exponents
-            self.show(part, f"{what}, {part:.0%} done")
+            name, part = progress.exponents
+            self.show(part, f"{name}, {part:.0%} done")
             return
         self.first = self.first or progress
         settling = isinstance(self.job.wanted.time.until, str)
         self.show(part_done(progress), pace(progress, self.first, settling=settling))
-        told = "" if self.warned else far_too_long(progress, self.first, settling=settling)
-        if told:
+        warning = "" if self.warned else far_too_long(progress, self.first, settling=settling)
+        if warning:
             self.warned = True
-            notice(told)
+            notice(warning)
         if progress.seconds >= self.next_save:
             spent = self._save()
             self.next_save = progress.seconds + spent + max(SAVE_EVERY, spent / SAVING_SHARE)
 
     def _save(self) -> float:
-        """Store the result so far; return the seconds it took. The run outlives a full disk."""
+        """Store the result so far; return the wall time [s]. A full disk does not end the run."""
         begun = time.monotonic()
         try:
             store(self.job, Run.of(self.job.simulation, Exponents.NEVER))

@@ -1,4 +1,4 @@
-"""The last part of a run: its figure and movie, its answer and its exit status."""
+"""End of `undula run` and `resume`: figure, movie, answer and exit status."""
 
 import json
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ import xarray as xr
 from undula.analysis.run_settings import Ending
 from undula.app.commands.drawing import draw_figure, draw_movie, figure_path, movie_path
 from undula.app.commands.run import compute
-from undula.app.commands.run_job import Job
+from undula.app.commands.run_job import RunJob
 from undula.app.commands.run_text import run_text
 from undula.errors import InputError
 from undula.storage.outputs import Claim, discard
@@ -22,12 +22,12 @@ _ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.SOLVED, Ending.IRREGULAR, End
 
 
 def views_of(result: Path, *, with_movie: bool = True) -> list[Path]:
-    """Return the names of the figure of a result and of its movie, which are made beside it."""
+    """Return the files of the figure of a result and of its movie, next to it."""
     return [figure_path(result, None), *([movie_path(result, None)] if with_movie else [])]
 
 
 def finish(
-    job: Job,
+    job: RunJob,
     claim: Claim,
     views: Sequence[Path],
     *,
@@ -35,43 +35,43 @@ def finish(
     lyapunov: bool,
     as_json: bool,
 ) -> int:
-    """Carry a run to its end, draw it, and answer.
+    """Compute a run to its end, draw it, and answer.
 
     Parameters
     ----------
     job
         The run.
     claim
-        On its file and its views.
+        The claim on its file, figure and movie.
     views
-        Names of those to be made; a run that is stopped early has no movie.
+        Files of figure and movie to be made; a run that is stopped early has no movie.
     budget
-        Seconds after which it is ended with what it has.
+        Wall time after which the run is stopped [s].
     lyapunov
-        Whether to compute Lyapunov exponents of any motion, not only of an irregular one.
+        If true, compute Lyapunov exponents of any motion, not only of an irregular one.
     as_json
-        Whether to answer in JSON.
+        If true, the answer is JSON.
 
     Returns
     -------
     int
-        The exit status: 0 if all was done, 3 if not, the result being kept.
+        The exit status: 0 if all is done, 3 if the run was stopped early and its result kept.
     """
     computed = compute(job, budget, lyapunov=lyapunov)
     for path in views_of(job.result):
-        discard(path)  # of a result that this one has replaced: they would mislead
+        discard(path)  # figure and movie of the replaced result would mislead
     stopped = job.simulation.ending in (Ending.INTERRUPTED, Ending.OUT_OF_TIME)
     stored = load_result(job.result)
     made, complete = _draw(stored, job.result, claim, views[:1] if stopped else views)
     complete = complete and not computed.without
     answer = json.loads(stored.attrs["summary"]) | _seed(job)
     answer |= {"seconds": computed.seconds, "output": str(job.result)} | made
-    _tell_of_trouble(job, computed.without)
+    _report_early_end(job, computed.without)
     reply(answer, run_text(answer), as_json=as_json)
     return DONE if complete and job.simulation.ending in _ENDED_WELL else STOPPED_EARLY
 
 
-def _seed(job: Job) -> dict[str, Any]:
+def _seed(job: RunJob) -> dict[str, Any]:
     start = job.wanted.dump()["start"]
     return {"seed": start["seed"]} if "seed" in start else {}
 
@@ -79,10 +79,10 @@ def _seed(job: Job) -> dict[str, Any]:
 def _draw(
     stored: xr.Dataset, result: Path, claim: Claim, views: Sequence[Path]
 ) -> tuple[dict[str, str | None], bool]:
-    """Draw what can be drawn; return the names by kind, and whether nothing failed."""
+    """Draw figure and movie; return their names by kind, and True if nothing failed."""
     made: dict[str, str | None] = {"figure": None, "movie": None}
     try:
-        # A run without a movie has the figure alone.
+        # Without a movie, `views` holds the figure alone.
         for (kind, draw), path in zip(_VIEWS, views, strict=False):
             draw(stored, path, claim)
             made[kind] = str(path)
@@ -95,8 +95,8 @@ def _draw(
     return made, True
 
 
-def _tell_of_trouble(job: Job, without: str) -> None:
-    """Say why a run has ended early, and what to do."""
+def _report_early_end(job: RunJob, without: str) -> None:
+    """Give notice of an early end of a run, with its cause and cure."""
     ending, time = job.simulation.ending, job.simulation.time
     if ending is Ending.FAILED:
         notice(
@@ -104,9 +104,9 @@ def _tell_of_trouble(job: Job, without: str) -> None:
             f" in {job.result}"
         )
     elif ending not in _ENDED_WELL:
-        why = "interrupted" if ending is Ending.INTERRUPTED else "out of its budget of time"
+        cause = "interrupted" if ending is Ending.INTERRUPTED else "out of its budget of time"
         notice(
-            f"the run was {why} at t = {time:.6g}; everything so far is in {job.result}, go on"
+            f"the run was {cause} at t = {time:.6g}; everything so far is in {job.result}, go on"
             f" with: undula resume {job.result}"
         )
     elif without:

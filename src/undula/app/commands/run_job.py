@@ -1,4 +1,4 @@
-"""A run with its input and its place on disk: begun from an input, or taken up from a file."""
+"""Runs with their input and result file: begun from an input, or resumed from a file."""
 
 import json
 import math
@@ -18,15 +18,15 @@ from undula.inputs.file_names import file_name
 from undula.inputs.input import RunInput, parse_input
 from undula.storage.run_file import load_checkpoint, load_result
 
-#: Endings after which a run goes on to where it was to end.
+#: Endings after which a resumed run ends where it was to end before.
 _STOPPED_EARLY = tuple(
     ending.value for ending in (Ending.RUNNING, Ending.INTERRUPTED, Ending.OUT_OF_TIME)
 )
 
 
 @dataclass(frozen=True)
-class Job:
-    """A simulation, the complete input that makes it, and the file that keeps its result."""
+class RunJob:
+    """A simulation with its complete input and the file of its result."""
 
     wanted: RunInput
     simulation: Simulation
@@ -34,58 +34,58 @@ class Job:
 
 
 def reads_of(file: Path | None, wanted: RunInput) -> list[Path]:
-    """Return the files that an input is read from: its own, and the one that its start names.
+    """Return the files that an input is read from: its own, and that of its start.
 
     Raises
     ------
     InputError
-        No file can be called so.
+        The start names a file with an invalid name.
     """
     named = wanted.start.file
     return [*([] if file is None else [file]), *([] if named is None else [file_name(named)])]
 
 
-def begin(wanted: RunInput, result: Path) -> Job:
+def begin(wanted: RunInput, result: Path) -> RunJob:
     """Return the run of an input, at time 0.
 
     Raises
     ------
     InputError
-        The start cannot be made.
+        The start is invalid.
     """
     model = build_model(wanted)
     start = build_start(wanted, model)
     simulation = Simulation.begin(model, start, build_schedule(wanted))
-    return Job(wanted, simulation, result)
+    return RunJob(wanted, simulation, result)
 
 
-def take_up(result: Path, until: float | None) -> Job:
-    """Return the run of a result file, where it ended.
+def resumed(result: Path, until: float | None) -> RunJob:
+    """Return the run of a result file at its last time.
 
     Parameters
     ----------
     result
         A file written by ``undula run``.
     until
-        Time at which it is to end [T]; by default where it was to end when it was stopped early.
+        New end time [T]; None for the end time of a run that was stopped early.
 
     Raises
     ------
     InputError
-        The file cannot be read or resumed, or there is nothing left to do.
+        The file cannot be read or resumed, or the run has reached its end.
     """
-    # What is missing in a file that other software has stored is told by its checkpoint first.
+    # In a file that other software has stored, the checkpoint names what is missing.
     saved, stored = load_checkpoint(result), load_result(result)
     wanted = _stored_input(result, stored)
-    _refuse_what_cannot_go_on(result, stored, until)
+    _refuse_finished(result, stored, until)
     if until is not None:
         wanted = _until(wanted, until, float(saved["interval"]))
     simulation = resume(build_model(wanted), build_schedule(wanted), saved)
-    return Job(wanted, simulation, result)
+    return RunJob(wanted, simulation, result)
 
 
 def _stored_input(result: Path, stored: xr.Dataset) -> RunInput:
-    """Return the input of a result; its checkpoint holds for the version that wrote it only."""
+    """Return the input of a result; refuse one of another version of undula."""
     writer, reader = json.loads(stored.attrs["versions"])["undula"], version("undula")
     if writer != reader:
         raise InputError(
@@ -98,7 +98,8 @@ def _stored_input(result: Path, stored: xr.Dataset) -> RunInput:
         raise InputError(f"{result} holds no input of undula run: {error}") from error
 
 
-def _refuse_what_cannot_go_on(result: Path, stored: xr.Dataset, until: float | None) -> None:
+def _refuse_finished(result: Path, stored: xr.Dataset, until: float | None) -> None:
+    """Refuse to resume a run that has failed or reached its end."""
     status = json.loads(stored.attrs["summary"])["status"]
     reached = float(stored["time"][-1])
     if status == Ending.FAILED.value:
@@ -119,7 +120,7 @@ def _refuse_what_cannot_go_on(result: Path, stored: xr.Dataset, until: float | N
 
 
 def _until(wanted: RunInput, end: float, interval: float) -> RunInput:
-    """Return an input with another end that has its samples as far apart as the stored ones."""
+    """Return an input with another end time and the sampling interval of the stored run."""
     tables: dict[str, Any] = wanted.dump()
     tables["time"].pop("limit", None)
     tables["time"]["until"] = end

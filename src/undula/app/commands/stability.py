@@ -1,6 +1,6 @@
-"""The questions of `undula stability`: asked of the analysis, answered and drawn.
+"""`undula stability`: stability of the straight state, in plain JSON types and drawn.
 
-Plotting is imported only if there is something to plot: the answer itself takes milliseconds.
+Plotting is imported only for a figure, since the answer itself takes milliseconds.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,21 +24,23 @@ from undula.terminal.units_text import force_in
 
 Values = tuple[float, ...]
 
-# The figure of a single case shows this many forces, so far beyond the threshold and the force.
+#: Number of forces in the figure of a single case, and its last force over the largest of
+#: threshold, given force and 1.
 _SHOWN, _BEYOND = 241, 1.3
 
 
 @dataclass(frozen=True)
-class Question:
-    """What is asked of the straight state.
+class StabilityRequest:
+    """A stability analysis of the straight state.
 
     Attributes
     ----------
     wanted : StabilityInput
+        Model and method.
     forces : tuple of float or None
-        Forces at which the leading eigenvalue is asked for.
+        Forces at which the leading eigenvalue is computed.
     along : (str, tuple of float) or None
-        A parameter with its values.
+        A parameter and its values.
     """
 
     wanted: StabilityInput
@@ -46,28 +48,28 @@ class Question:
     along: tuple[str, Values] | None
 
 
-def ask(question: Question) -> tuple[Answer, Callable[[], Any]]:
-    """Answer a question; return the answer, and what draws it.
+def analyse(request: StabilityRequest) -> tuple[Answer, Callable[[], Any]]:
+    """Return the answer of a stability analysis, and a function that draws its figure.
 
     Raises
     ------
     InputError
         A value is out of its range.
     """
-    if question.forces is not None:
-        answered, draw = _ask_growth(question, question.forces)
-    elif question.along is not None:
-        answered, draw = _ask_thresholds(question, *question.along)
+    if request.forces is not None:
+        analysed, draw = _growth(request, request.forces)
+    elif request.along is not None:
+        analysed, draw = _thresholds_along(request, *request.along)
     else:
-        answered, draw = _ask_onset(question)
-    head = {"status": "done", "load": _title(question)}
-    return Answer(head | answered.answer, answered.text), draw
+        analysed, draw = _onset(request)
+    head = {"status": "done", "load": _title(request)}
+    return Answer(head | analysed.answer, analysed.text), draw
 
 
-def _ask_onset(question: Question) -> tuple[Answer, Callable[[], Any]]:
-    model, options = _model(question)
+def _onset(request: StabilityRequest) -> tuple[Answer, Callable[[], Any]]:
+    model, options = _model(request)
     straight_onset, at_force = onset(model, **options), spectrum(model, **options)
-    title, units = _title(question), model.units
+    title, units = _title(request), model.units
 
     def draw() -> Any:
         from undula.views import stability_portrait
@@ -78,18 +80,18 @@ def _ask_onset(question: Question) -> tuple[Answer, Callable[[], Any]]:
             straight_onset, growth, at_force, title=title, units=units.names()
         )
 
-    told = text.onset_text(title, straight_onset, at_force, units)
-    return Answer(onset_answer(straight_onset, at_force, units), told), draw
+    answer = onset_answer(straight_onset, at_force, units)
+    return Answer(answer, text.onset_text(title, straight_onset, at_force, units)), draw
 
 
-def _ask_growth(question: Question, forces: Values) -> tuple[Answer, Callable[[], Any]]:
-    model, options = _model(question)
-    name, values = question.along or (None, None)
+def _growth(request: StabilityRequest, forces: Values) -> tuple[Answer, Callable[[], Any]]:
+    model, options = _model(request)
+    name, values = request.along or (None, None)
     with counted("growth rates") as progress:
         growth = growth_curve(
             model, forces, parameter=name, values=values, progress=progress, **options
         )
-    title, units = _title(question), model.units
+    title, units = _title(request), model.units
 
     def draw() -> Any:
         from undula.views import growth_figure
@@ -99,14 +101,14 @@ def _ask_growth(question: Question, forces: Values) -> tuple[Answer, Callable[[]
     return Answer(growth_answer(growth, units), text.growth_text(title, growth, units)), draw
 
 
-def _ask_thresholds(
-    question: Question, name: str, values: Values
+def _thresholds_along(
+    request: StabilityRequest, name: str, values: Values
 ) -> tuple[Answer, Callable[[], Any]]:
-    model, options = _model(question)
+    model, options = _model(request)
     with counted("thresholds") as progress:
         curve = critical_curve(model, name, values, progress=progress, **options)
-    title = _title(question)
-    # A chain of other links has other further units.
+    title = _title(request)
+    # The further units of a chain depend on its number of links.
     units = [changed(model, name, value).units for value in values]
 
     def draw() -> Any:
@@ -176,8 +178,8 @@ def thresholds_answer(curve: CriticalCurve, units: Sequence[Units]) -> dict[str,
         "paper_time": curve.onsets[0].paper_time,
         "parameter": curve.parameter,
         "thresholds": [
-            {curve.parameter: float(value)} | _thresholds(onset, each)
-            for value, onset, each in zip(curve.values, curve.onsets, units, strict=True)
+            {curve.parameter: float(value)} | _thresholds(onset, own_units)
+            for value, onset, own_units in zip(curve.values, curve.onsets, units, strict=True)
         ],
     }
 
@@ -199,13 +201,13 @@ def _thresholds(onset: Onset, units: Units) -> dict[str, Any]:
     }
 
 
-def _model(question: Question) -> tuple[Model, dict[str, Any]]:
-    table = question.wanted.stability
-    return build_model(question.wanted), {"method": table.method, "paper_time": table.paper_time}
+def _model(request: StabilityRequest) -> tuple[Model, dict[str, Any]]:
+    table = request.wanted.stability
+    return build_model(request.wanted), {"method": table.method, "paper_time": table.paper_time}
 
 
-def _title(question: Question) -> str:
-    """Return the load in words, without what the answer sweeps over."""
-    along = [question.along[0]] if question.along else []
-    swept = ["load.force", *along] if question.forces or along else []
-    return question.wanted.tell(swept)
+def _title(request: StabilityRequest) -> str:
+    """Return the load in words, without the parameters that the answer varies."""
+    along = [request.along[0]] if request.along else []
+    varied = ["load.force", *along] if request.forces or along else []
+    return request.wanted.describe(varied)

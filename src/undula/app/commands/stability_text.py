@@ -1,4 +1,4 @@
-"""The answers of `undula stability` for people."""
+"""Answers of `undula stability` for people."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,19 +9,19 @@ from undula.models.units import Units
 from undula.terminal.numbers import with_error
 from undula.terminal.units_text import units_lines
 
-#: Rates and frequencies are per this time; the printed equation's is shorter by the drag ratio.
+#: Unit of time of rates and frequencies; that of the paper's equation is shorter by the drag ratio.
 _TIME = {False: "T", True: "(T/gamma)"}
 
 
 def onset_text(title: str, onset: Onset, at_force: Spectrum, units: Units) -> str:
-    """Return thresholds, later crossings and the spectrum at the given force, one a line."""
+    """Return thresholds, later crossings and the spectrum at the given force, one in each line."""
     lines = list(_onset_lines(onset, at_force, units))
     width = max(len(name) for name, _ in lines)
     head = [
         f"{title}: stability of the straight state, method {onset.method}",
         *units_lines(units.names(), units.forces),
     ]
-    return "\n".join([*head, *(f"  {name:<{width}}  {said}" for name, said in lines)])
+    return "\n".join([*head, *(f"  {name:<{width}}  {content}" for name, content in lines)])
 
 
 def growth_text(title: str, growth: GrowthCurve, units: Units) -> str:
@@ -30,12 +30,12 @@ def growth_text(title: str, growth: GrowthCurve, units: Units) -> str:
     columns: list[tuple[str, Sequence[str]]] = []
     if growth.parameter is not None and growth.values is not None:
         values = growth.values
-        columns = [(growth.parameter, [f"{values[at[0]]:.6g}" for at in places])]
+        columns = [(growth.parameter, [f"{values[place[0]]:.6g}" for place in places])]
     columns += [
-        ("force", [f"{growth.forces[at[-1]]:.6g}" for at in places]),
-        ("rate", [f"{growth.rates[at]:.8g}" for at in places]),
-        ("frequency", [f"{growth.frequencies[at]:.8g}" for at in places]),
-        ("error", [f"{growth.errors[at]:.1g}" for at in places]),
+        ("force", [f"{growth.forces[place[-1]]:.6g}" for place in places]),
+        ("rate", [f"{growth.rates[place]:.8g}" for place in places]),
+        ("frequency", [f"{growth.frequencies[place]:.8g}" for place in places]),
+        ("error", [f"{growth.errors[place]:.1g}" for place in places]),
     ]
     unit = _TIME[growth.paper_time]
     head = (
@@ -48,7 +48,7 @@ def growth_text(title: str, growth: GrowthCurve, units: Units) -> str:
 def thresholds_text(title: str, curve: CriticalCurve, units: Sequence[Units]) -> str:
     """Return thresholds along a parameter as a table, with the units of the model at each value."""
     unit, first = _TIME[curve.onsets[0].paper_time], units[0]
-    hopf = [each.force_in(force) for each, force in zip(units, curve.forces, strict=True)]
+    hopf = [own_units.force_in(force) for own_units, force in zip(units, curve.forces, strict=True)]
     columns = [
         (curve.parameter, [f"{value:.6g}" for value in curve.values]),
         ("rings from", [_number(force, 10) for force in curve.oscillatory_forces]),
@@ -75,33 +75,34 @@ def _onset_lines(onset: Onset, at_force: Spectrum, units: Units) -> Iterator[tup
         yield "oscillates from", _force(onset.hopf.force, onset.hopf.error, units)
         yield from _crossing_lines(onset.hopf, unit, units.force)
     for crossing in onset.later:
-        what = "joins" if crossing.growth_slope > 0.0 else "calms down"
+        change = "joins" if crossing.growth_slope > 0.0 else "calms down"
         yield (
             "later",
             f"at {_force(crossing.force, crossing.error, units)} a pair of"
-            f" {crossing.frequency:.6g} cycles per {unit} {what}",
+            f" {crossing.frequency:.6g} cycles per {unit} {change}",
         )
     for value, error in zip(at_force.values, at_force.errors, strict=True):
         if value.imag < 0.0:
-            continue  # told with its partner
-        turns = 2.0 * np.pi
-        swings = with_error(value.imag / turns, error / turns) if value.imag > 0.0 else ""
-        told = f"rate {_rate(float(value.real), float(error))} per {unit}"
-        yield f"at {at_force.force:.6g}", f"{told}, {swings} cycles per {unit}" if swings else told
+            continue  # the complex conjugate is listed
+        rate = f"rate {_rate(float(value.real), float(error))} per {unit}"
+        turn = 2.0 * np.pi
+        frequency = with_error(value.imag / turn, error / turn) if value.imag > 0.0 else ""
+        line = f"{rate}, {frequency} cycles per {unit}" if frequency else rate
+        yield f"at {at_force.force:.6g}", line
 
 
 def _force(force: float, error: float | None, units: Units) -> str:
     return f"{with_error(force, error)} {units.force}{units.beside(force)}"
 
 
-def _crossing_lines(crossing: Crossing, unit: str, of_force: str) -> Iterator[tuple[str, str]]:
+def _crossing_lines(crossing: Crossing, unit: str, force_unit: str) -> Iterator[tuple[str, str]]:
     frequency = with_error(crossing.frequency, crossing.frequency_error)
     yield "frequency", f"{frequency} cycles per {unit}"
-    yield "growth slope", f"{crossing.growth_slope:.6g} per {unit} and {of_force}"
+    yield "growth slope", f"{crossing.growth_slope:.6g} per {unit} and {force_unit}"
 
 
 def _rate(value: float, error: float) -> str:
-    # A filament that is pulled straightens at rates of any smallness, each known to many digits.
+    # A pulled filament straightens at rates that may be tiny and are accurate to many digits.
     if error < abs(value) < 1e-3:
         return f"{value:.6g} ± {error:.1g}"
     return with_error(value, error)

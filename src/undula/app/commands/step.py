@@ -1,4 +1,4 @@
-"""`undula step`: a series of steps begun or gone on with, kept safe on the way, drawn and told."""
+"""`undula step`: a quasi-static ramp computed or continued, stored at intervals and drawn."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -32,19 +32,35 @@ from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
 from undula.terminal.progress import searching, stepped
 from undula.views import ramp_diagram
 
-#: Least seconds between two times that the steps so far are written.
+#: Least time between two writings of the steps so far [s].
 SAVE_EVERY = 2.0
-#: Writing takes at most this part of the time: a long series has a large file.
+#: Largest fraction of the time spent on writing, since long ramps have large files.
 SAVING_SHARE = 0.1
 
 
 class _OutOfTimeError(Exception):
-    """The budget was spent amid a search."""
+    """The budget was spent during a search."""
 
 
 @dataclass(frozen=True)
-class Job:
-    """A series with its input, its place on disk, the files that it is read from, and options."""
+class RampJob:
+    """A ramp with its input, files and options.
+
+    Attributes
+    ----------
+    wanted
+        The checked input.
+    series
+        The ramp.
+    result
+        File of the steps.
+    reads
+        Files that the input is read from.
+    overwrite
+        If true, an existing file is replaced instead of continued.
+    with_thresholds
+        If true, thresholds of the force are solved for.
+    """
 
     wanted: RunInput
     series: Series
@@ -55,7 +71,20 @@ class Job:
 
 
 def plan(wanted: RunInput, along: str, *, back: bool, kick: float, seed: int) -> Series:
-    """Return the series of an input and the options of a command line.
+    """Return the ramp of an input.
+
+    Parameters
+    ----------
+    wanted
+        The checked input.
+    along
+        ``KEY=START:STOP:STEP``.
+    back
+        If true, the ramp returns through the same values.
+    kick
+        Largest turn of a link before a step [rad].
+    seed
+        Seed of the random kicks.
 
     Raises
     ------
@@ -65,31 +94,31 @@ def plan(wanted: RunInput, along: str, *, back: bool, kick: float, seed: int) ->
     course = Ramp(*parse_steps("--along", along), back=back, kick=kick, seed=seed)
     model = build_model(wanted)
     course.models(model)
-    return Series(wanted.dump(), wanted.tell({course.parameter}), model, course)
+    return Series(wanted.dump(), wanted.describe({course.parameter}), model, course)
 
 
-def step_along(job: Job, *, budget: float, as_json: bool) -> int:
-    """Make the steps that are missing, store and draw all of them, and answer.
+def run_ramp(job: RampJob, *, budget: float, as_json: bool) -> int:
+    """Compute the missing steps of a ramp, store and draw all steps, and answer.
 
     Parameters
     ----------
     job
-        What is asked.
+        The ramp.
     budget
-        Seconds after which the series is ended with the steps that it has.
+        Wall time after which the ramp is stopped [s].
     as_json
-        Whether to answer in JSON.
+        If true, the answer is JSON.
 
     Returns
     -------
     int
-        The exit status: 0 if all was done, 3 if not, the steps being kept.
+        The exit status: 0 if all is done, 3 if some steps are missing and the others kept.
 
     Raises
     ------
     InputError
-        The thresholds are not those of the parameter, the folder cannot be written, or there is a
-        file in it with which this series cannot go on.
+        The parameter has no thresholds, the folder cannot be written, or the file holds another
+        ramp.
     """
     if job.with_thresholds and job.series.course.parameter != FORCE:
         raise InputError(
@@ -106,20 +135,20 @@ def step_along(job: Job, *, budget: float, as_json: bool) -> int:
         overwrite=job.overwrite,
         reads=job.reads,
     ) as claim:
-        steps = [] if job.overwrite or not job.result.exists() else _taken_up(job)
+        steps = [] if job.overwrite or not job.result.exists() else _stored(job)
         with interruptible() as interrupted:
-            status, found = _carry_on(job, steps, budget, interrupted), None
+            status, thresholds = _compute(job, steps, budget, interrupted), None
         if status == "done" and job.with_thresholds:
-            status, found = _solve(job.series.model, end)
-        drawn = _draw(job, figure, claim, steps, found or ())
-    answer = step_answer(job.series, steps, found)
+            status, thresholds = _solve(job.series.model, end)
+        drawn = _draw(job, figure, claim, steps, thresholds or ())
+    answer = step_answer(job.series, steps, thresholds)
     answer |= {"status": status, "store": str(job.result) if steps else None, "figure": drawn}
-    fine = _tell_of_trouble(job, status, steps) and drawn is not None
+    complete = _report_failures(job, status, steps) and drawn is not None
     reply(answer, step_text(job.series, answer), as_json=as_json)
-    return DONE if fine else STOPPED_EARLY
+    return DONE if complete else STOPPED_EARLY
 
 
-def _taken_up(job: Job) -> list[Step]:
+def _stored(job: RampJob) -> list[Step]:
     """Return the steps of an earlier call."""
     try:
         stored = load_ramp(job.result)
@@ -129,16 +158,18 @@ def _taken_up(job: Job) -> list[Step]:
     return stored_steps(stored)
 
 
-def _carry_on(job: Job, steps: list[Step], budget: float, interrupted: Callable[[], bool]) -> str:
-    """Append the missing steps, as far as time and patience go; return how it ended."""
+def _compute(
+    job: RampJob, steps: list[Step], budget: float, interrupted: Callable[[], bool]
+) -> str:
+    """Append the missing steps within the budget; return the status of the answer."""
     series, targets, before = job.series, job.series.course.targets, len(steps)
     first = series.course.models(series.model)[0]
     start = first.straight() if steps else build_start(job.wanted, first)
-    keep = _Keeper(job)
+    save = _Saver(job)
     ending = "done"
     try:
         with (
-            stepped("stepping", series.course.parameter, before, len(targets)) as tell,
+            stepped("stepping", series.course.parameter, before, len(targets)) as show,
             compilation_announced(notice),
         ):
             for step in ramp(
@@ -148,10 +179,10 @@ def _carry_on(job: Job, steps: list[Step], budget: float, interrupted: Callable[
                 build_schedule(job.wanted),
                 before=tuple(steps),
                 budget=budget,
-                progress=lambda run: tell(len(steps), targets[len(steps)][0], run.time),
+                progress=lambda run: show(len(steps), targets[len(steps)][0], run.time),
             ):
                 steps.append(step)
-                keep(steps)
+                save(steps)
                 if interrupted() and len(steps) < len(targets):
                     raise KeyboardInterrupt
     except KeyboardInterrupt:
@@ -163,10 +194,10 @@ def _carry_on(job: Job, steps: list[Step], budget: float, interrupted: Callable[
     return "out of time" if ending == "done" and len(steps) < len(targets) else ending
 
 
-class _Keeper:
-    """Stores the steps so far every now and then. The series outlives a full disk."""
+class _Saver:
+    """Stores the steps so far at intervals. A full disk does not end the ramp."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: RampJob) -> None:
         self._job, self._due = job, 0.0
 
     def __call__(self, steps: Sequence[Step]) -> None:
@@ -182,36 +213,40 @@ class _Keeper:
 
 
 def _solve(model: Model, end: float) -> tuple[str, list[Threshold] | None]:
-    """Return how the search for the solved thresholds ended, and them if it was not cut short."""
-    found = []
+    """Return the status of the search for thresholds, and the thresholds of a complete search."""
+    thresholds = []
     try:
         with compilation_announced(notice):
             for name in THRESHOLDS:
-                with searching(name) as tell:
-                    found.append(threshold(model, name, progress=_until(end, tell)))
+                with searching(name) as show:
+                    thresholds.append(threshold(model, name, progress=_until(end, show)))
     except KeyboardInterrupt:
         return "interrupted", None
     except _OutOfTimeError:
         return "out of time", None
-    return "done", found
+    return "done", thresholds
 
 
-def _until(end: float, tell: Callable[[int, float], None]) -> Callable[[int, float], None]:
+def _until(end: float, show: Callable[[int, float], None]) -> Callable[[int, float], None]:
+    """Return a progress function that ends the search when the time is over."""
+
     def progress(links: int, force: float) -> None:
         if time.monotonic() > end:
             raise _OutOfTimeError
-        tell(links, force)
+        show(links, force)
 
     return progress
 
 
 def _draw(
-    job: Job, path: Path, claim: Claim, steps: Sequence[Step], found: Sequence[Threshold]
+    job: RampJob, path: Path, claim: Claim, steps: Sequence[Step], thresholds: Sequence[Threshold]
 ) -> str | None:
-    """Draw the steps beside their file; return the name of the figure, None without one."""
+    """Draw the steps; return the name of the figure, None without a figure."""
     if not steps:
         return None
-    values = {one.kind: one.value for one in found if one.value is not None}
+    values = {
+        threshold.kind: threshold.value for threshold in thresholds if threshold.value is not None
+    }
     try:
         figure = ramp_diagram([dataset_of_steps(job.series, steps)], thresholds=[values])
         save_figure(figure, path, claim)
@@ -224,8 +259,8 @@ def _draw(
     return str(path)
 
 
-def _tell_of_trouble(job: Job, status: str, steps: Sequence[Step]) -> bool:
-    """Say what went wrong, and what to do; return whether nothing did."""
+def _report_failures(job: RampJob, status: str, steps: Sequence[Step]) -> bool:
+    """Give notice of failed and missing steps, with the cure; return True without any."""
     failed = [step for step in steps if step.status == Ending.FAILED.value]
     if failed:
         notice(
@@ -234,9 +269,9 @@ def _tell_of_trouble(job: Job, status: str, steps: Sequence[Step]) -> bool:
         )
     total = len(job.series.course.targets)
     if status != "done":
-        why = "interrupted" if status == "interrupted" else "out of its budget of time"
+        cause = "interrupted" if status == "interrupted" else "out of its budget of time"
         notice(
-            f"the series was {why} after {len(steps)} of {total} steps; the same command goes on"
+            f"the series was {cause} after {len(steps)} of {total} steps; the same command goes on"
             " from there"
         )
     return not failed and status == "done"

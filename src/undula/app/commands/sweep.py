@@ -1,4 +1,4 @@
-"""`undula sweep` and `undula status`: a study done or gone on with, and how far it is."""
+"""`undula sweep` and `undula status`: compute the missing points of a sweep, and report on it."""
 
 import time
 from collections.abc import Sequence
@@ -7,22 +7,23 @@ from pathlib import Path
 from typing import Any
 
 from undula.analysis.run_settings import Ending
-from undula.app.commands.sweep_text import study_answer, study_text
+from undula.app.commands.sweep_text import sweep_answer, sweep_text
 from undula.errors import InputError
 from undula.interrupts import interruptible
 from undula.sweeps.own_workers import workers_that_fit
-from undula.sweeps.point import line, point, points, software
-from undula.sweeps.store import StudyStore, load_sweep, open_study
-from undula.sweeps.sweep import Study, read_study
+from undula.sweeps.point import point_record, point_records, row_records, software
+from undula.sweeps.store import SweepStore, load_sweep, open_sweep
+from undula.sweeps.sweep import Sweep, read_sweep
 from undula.sweeps.work_queue import SAVE_EVERY, SweepWork
 from undula.sweeps.workers import DiedError, LostError, Pool, pool
 from undula.terminal.compile_notice import compilation_announced
 from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
 from undula.terminal.progress import swept
 
-#: Seconds to wait for results before looking at the clock again.
+#: Time to wait for results before the clock is checked again [s].
 _PATIENCE = 0.2
-_WHY = {
+#: Causes of an early end in words, by the status of the answer.
+_CAUSES = {
     "interrupted": "interrupted",
     "out of time": "out of its budget of time",
     "scheduler lost": "left by its scheduler",
@@ -31,19 +32,19 @@ _WHY = {
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a call asks for besides the study: where the workers are, and how long.
+class SweepRequest:
+    """Options of a call with a sweep.
 
     Attributes
     ----------
     workers
-        Number of processes on this machine; by default one for each processor.
+        Number of processes on this machine; None for one on each processor.
     scheduler
-        Address of a running Dask scheduler to be used instead.
+        Address of a running Dask scheduler whose workers are used instead; None without.
     retry_failed
-        Whether points that have failed are done again.
+        If true, failed points are computed again.
     budget
-        Seconds after which the study is left with the points that it has.
+        Time after which the sweep is stopped with the points that it has [s].
     """
 
     workers: int | None = None
@@ -52,7 +53,7 @@ class Asked:
     budget: float = float("inf")
 
     def __post_init__(self) -> None:
-        """Refuse what does not go together."""
+        """Refuse options that exclude each other."""
         if self.workers is not None and self.scheduler is not None:
             raise InputError(
                 f"--workers {self.workers} has no meaning with --scheduler, which has workers of"
@@ -62,79 +63,79 @@ class Asked:
             raise InputError(f"--workers {self.workers} is out of range; give at least 1")
 
 
-def sweep(
-    file: Path, changes: Sequence[str], out: Path | None, asked: Asked, *, as_json: bool
+def run_sweep(
+    file: Path, changes: Sequence[str], out: Path | None, request: SweepRequest, *, as_json: bool
 ) -> int:
-    """Do the points of a study that are missing in its store, and answer.
+    """Compute the points of a sweep that are missing in its store, and answer.
 
     Parameters
     ----------
     file, changes
-        The input with the study, and changes of single keys.
+        The input file of the sweep, and changes of single keys.
     out
-        The store; by default results/ and the name of the input.
-    asked
-        Where and for how long.
+        Folder of the store; None for results/ and the name of the input.
+    request
+        Workers and budget.
     as_json
-        Whether to answer in JSON.
+        If true, the answer is JSON.
 
     Returns
     -------
     int
-        The exit status: 0 if all points are done, 3 if some are left or have failed, what there is
-        being kept.
+        The exit status: 0 if all points are done, 3 if some are missing or have failed. All results
+        are kept.
 
     Raises
     ------
     InputError
-        The study is wrong, there is something else in the store's place, no scheduler answers, or
-        the folder cannot be written or is full.
+        The input is wrong, the folder holds something else, no scheduler answers, or the folder
+        cannot be written or is full.
     """
     began = time.monotonic()
-    if asked.scheduler is None:
-        workers_that_fit(asked.workers)
-    store = open_study(out or Path("results") / f"{file.stem}.zarr", read_study(file, changes))
+    if request.scheduler is None:
+        workers_that_fit(request.workers)
+    store = open_sweep(out or Path("results") / f"{file.stem}.zarr", read_sweep(file, changes))
     with store.alone():
-        work = SweepWork(store, retry_failed=asked.retry_failed)
-        status = _carry_on(work, store.study, asked, began) if work.left else "done"
-    answer = study_answer(load_sweep(store.path, shapes=False))
+        work = SweepWork(store, retry_failed=request.retry_failed)
+        status = _compute(work, store.sweep, request, began) if work.left else "done"
+    answer = sweep_answer(load_sweep(store.path, shapes=False))
     answer |= {"status": status, "seconds": time.monotonic() - began, "store": str(store.path)}
-    _tell_of_trouble(answer, store)
-    reply(answer, study_text(answer), as_json=as_json)
+    _report_failures(answer, store)
+    reply(answer, sweep_text(answer), as_json=as_json)
     return DONE if status == "done" and not work.failed else STOPPED_EARLY
 
 
-def status(path: Path, *, as_json: bool) -> int:
-    """Tell how far a study is; return the exit status.
+def report_status(path: Path, *, as_json: bool) -> int:
+    """Report the state of a stored sweep; return the exit status.
 
     Raises
     ------
     InputError
-        There is no such store.
+        The folder is not a store.
     """
-    answer = study_answer(load_sweep(path, shapes=False)) | {"store": str(path)}
-    reply(answer, study_text(answer), as_json=as_json)
+    answer = sweep_answer(load_sweep(path, shapes=False)) | {"store": str(path)}
+    reply(answer, sweep_text(answer), as_json=as_json)
     return DONE
 
 
-def _carry_on(work: SweepWork, study: Study, asked: Asked, began: float) -> str:
-    """Do what is left, as far as time and patience go; return how it ended."""
+def _compute(work: SweepWork, sweep: Sweep, request: SweepRequest, began: float) -> str:
+    """Compute the missing points within the budget; return the status of the answer."""
     try:
-        _compile(study)
+        _compile(sweep)
         with (
             interruptible() as interrupted,
-            pool(asked.workers, asked.scheduler, notice) as workers,
-            swept("sweeping", work.total, work.left) as tell,
+            pool(request.workers, request.scheduler, notice) as workers,
+            swept("sweeping", work.total, work.left) as show,
         ):
             try:
                 while work.left:
                     if interrupted():
                         return "interrupted"
-                    if time.monotonic() - began > asked.budget:
+                    if time.monotonic() - began > request.budget:
                         return "out of time"
-                    _hand_out(work, study, workers)
+                    _hand_out(work, sweep, workers)
                     _take_back(work, workers)
-                    tell(work.left, work.failed)
+                    show(work.left, work.failed)
             finally:
                 work.save()
     except LostError as lost:
@@ -144,41 +145,41 @@ def _carry_on(work: SweepWork, study: Study, asked: Asked, began: float) -> str:
     return "done"
 
 
-def _compile(study: Study) -> None:
-    """Have the kernels compiled here, where it can be told, before many workers need them."""
-    job = study.job(0)
-    if job["label"] == "runs":
-        job["tables"]["time"] |= {"until": 1e-6, "samples": 2}
-        job["tables"]["time"].pop("limit", None)
+def _compile(sweep: Sweep) -> None:
+    """Compile the kernels in this process, with a notice, before many workers need them."""
+    request = sweep.request(0)
+    if request["label"] == "runs":
+        request["tables"]["time"] |= {"until": 1e-6, "samples": 2}
+        request["tables"]["time"].pop("limit", None)
         with compilation_announced(notice):
-            made = point(job)
-        if made.get("ending") == Ending.INTERRUPTED.value:
+            record = point_record(request)
+        if record.get("ending") == Ending.INTERRUPTED.value:
             raise KeyboardInterrupt
 
 
-def _hand_out(work: SweepWork, study: Study, workers: Pool) -> None:
-    each = line if study.whole_lines else points
-    while workers.has_room and (piece := work.take()) is not None:
-        workers.give(piece, each, study.dump(), piece.numbers)
+def _hand_out(work: SweepWork, sweep: Sweep, workers: Pool) -> None:
+    compute = row_records if sweep.whole_rows else point_records
+    while workers.has_room and (task := work.take()) is not None:
+        workers.give(task, compute, sweep.dump(), task.numbers)
 
 
 def _take_back(work: SweepWork, workers: Pool) -> None:
-    for piece, outcome in workers.come_back(_PATIENCE):
+    for task, outcome in workers.come_back(_PATIENCE):
         if isinstance(outcome, DiedError):
-            work.died(piece)
+            work.died(task)
             continue
-        at_work, records = outcome
-        if at_work != software():
+        version, records = outcome
+        if version != software():
             raise InputError(
-                f"a worker runs undula {at_work} instead of {software()}; install that version"
+                f"a worker runs undula {version} instead of {software()}; install that version"
                 " there"
             )
-        work.take_back(piece, records)
+        work.take_back(task, records)
     work.save(SAVE_EVERY)
 
 
-def _tell_of_trouble(answer: dict[str, Any], store: StudyStore) -> None:
-    """Say what went wrong, and what to do."""
+def _report_failures(answer: dict[str, Any], store: SweepStore) -> None:
+    """Give notice of failed and missing points, with the cure."""
     counts = answer["points"]
     if counts["failed"]:
         first = answer["failures"][0]
@@ -188,6 +189,6 @@ def _tell_of_trouble(answer: dict[str, Any], store: StudyStore) -> None:
         )
     if answer["status"] != "done":
         notice(
-            f"the study was {_WHY[answer['status']]} with {counts['to_go']} of {counts['all']}"
+            f"the study was {_CAUSES[answer['status']]} with {counts['to_go']} of {counts['all']}"
             f" points to go; everything so far is in {store.path}, the same command goes on"
         )

@@ -1,4 +1,4 @@
-"""Dimensionless numbers of a filament to physical ones and back, in units of a microscope."""
+"""`undula units`: conversion between dimensionless and physical numbers of a filament."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Any
 from undula.errors import InputError
 from undula.models.scales import Quantity, Scales
 
-#: Name and SI value of the unit in which each quantity is shown.
+#: Name and SI value of the physical unit of each quantity.
 SHOWN_IN: Mapping[Quantity, tuple[str, float]] = {
     "length": ("um", 1e-6),
     "time": ("s", 1.0),
@@ -29,7 +29,7 @@ UNIT: Mapping[Quantity, str] = {
 
 @dataclass(frozen=True)
 class Converted:
-    """One value of a quantity in both systems."""
+    """A value in dimensionless and physical units."""
 
     quantity: Quantity
     dimensionless: float
@@ -47,13 +47,13 @@ def scales_of(length: float, stiffness: float, viscosity: float, slenderness: fl
     Parameters
     ----------
     length
-        Its length, um.
+        Length [um].
     stiffness
-        Its bending stiffness, pN um^2.
+        Bending stiffness [pN um^2].
     viscosity
-        That of the fluid, mPa s.
+        Viscosity of the fluid [mPa s].
     slenderness
-        Radius over length.
+        Radius over length, above 0 and below 1.
 
     Raises
     ------
@@ -72,17 +72,17 @@ def scales_of(length: float, stiffness: float, viscosity: float, slenderness: fl
     return Scales(length * 1e-6, stiffness * 1e-24, viscosity * 1e-3, slenderness)
 
 
-def given(
+def without_none(
     *, force: float | None, time: float | None, frequency: float | None, energy: float | None
 ) -> dict[Quantity, float]:
-    """Return the numbers that were given, by quantity."""
-    all_of_them: dict[Quantity, float | None] = {
+    """Return the numbers other than None, by quantity."""
+    values: dict[Quantity, float | None] = {
         "force": force,
         "time": time,
         "frequency": frequency,
         "energy": energy,
     }
-    return {quantity: value for quantity, value in all_of_them.items() if value is not None}
+    return {quantity: value for quantity, value in values.items() if value is not None}
 
 
 def convert(
@@ -93,9 +93,9 @@ def convert(
     Parameters
     ----------
     scales
-        What one dimensionless unit is.
+        Scales of the filament.
     dimensionless, physical
-        Numbers to be converted: in units of L, T and B, and in those of `SHOWN_IN`.
+        Numbers by quantity: in units of L, T and B, and in those of `SHOWN_IN`.
 
     Raises
     ------
@@ -121,22 +121,22 @@ def units_answer(scales: Scales, converted: list[Converted]) -> dict[str, Any]:
             "viscosity_mpa_s": _tidy(scales.viscosity * 1e3),
             "slenderness": scales.slenderness,
         },
-        "units": {quantity: _named(one) for quantity, one in _all_units(scales)},
+        "units": {quantity: _with_unit(unit) for quantity, unit in _all_units(scales)},
         "converted": [
-            {"quantity": one.quantity, "dimensionless": one.dimensionless} | _named(one)
-            for one in converted
+            {"quantity": value.quantity, "dimensionless": value.dimensionless} | _with_unit(value)
+            for value in converted
         ],
     }
 
 
 def units_text(scales: Scales, converted: list[Converted]) -> str:
-    """Return scales and conversions for people, one a line."""
+    """Return scales and conversions for people, one in each line."""
     head = (
         f"L = {scales.length * 1e6:g} um, B = {scales.bending_stiffness * 1e24:g} pN um^2,"
         f" viscosity {scales.viscosity * 1e3:g} mPa s, a/L = {scales.slenderness:g}"
     )
-    shown = [one for _, one in _all_units(scales)] + converted
-    return "\n".join([head, *(_line(one) for one in shown)])
+    shown = [unit for _, unit in _all_units(scales)] + converted
+    return "\n".join([head, *(_line(value) for value in shown)])
 
 
 def _all_units(scales: Scales) -> Iterator[tuple[Quantity, Converted]]:
@@ -154,14 +154,15 @@ def _from_physical(scales: Scales, quantity: Quantity, value: float) -> Converte
 
 
 def _tidy(value: float) -> float:
-    """Return a number without the round-off of a change of units."""
+    """Return a number without the round-off of a conversion."""
     return float(f"{value:.12g}")
 
 
-def _named(one: Converted) -> dict[str, Any]:
-    return {"physical": one.physical, "unit": one.unit}
+def _with_unit(value: Converted) -> dict[str, Any]:
+    return {"physical": value.physical, "unit": value.unit}
 
 
-def _line(one: Converted) -> str:
-    name, unit = one.quantity.replace("_", " "), UNIT[one.quantity]
-    return f"  {name:<13} {one.dimensionless:>8.6g} {unit:<12} = {one.physical:.6g} {one.unit}"
+def _line(value: Converted) -> str:
+    name, unit = value.quantity.replace("_", " "), UNIT[value.quantity]
+    dimensionless = f"{value.dimensionless:>8.6g} {unit:<12}"
+    return f"  {name:<13} {dimensionless} = {value.physical:.6g} {value.unit}"

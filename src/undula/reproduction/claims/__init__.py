@@ -1,1 +1,1 @@
-"""The statements of the paper and their evaluation."""
+"""Claims of the paper and their evaluation."""

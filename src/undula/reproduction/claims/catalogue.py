@@ -1,8 +1,8 @@
-"""Items of the catalogue: what the paper says, what is computed to check it, and what is drawn.
+"""Catalogue of claims: items with statements of the paper, tasks that check them, and figures.
 
-Each is a TOML file in the folder `catalogue`. It holds inputs and published values, and nothing
-that this package has computed. Beside the items the folder holds `paper.toml`, which names the
-paper, and the folder `inputs` with input files of commands, such as studies of many runs.
+Each item is a TOML file in the folder `items`. It holds inputs and published values, and nothing
+that this package has computed. The folder also holds `paper.toml`, which names the paper, and the
+folder `inputs` with input files of commands, such as sweeps.
 """
 
 import ast
@@ -37,11 +37,12 @@ _PLACE = re.compile(r"\{([\w-]+)\}")
 _BUILT_IN = ("out", "inputs")
 
 
-class Task(Table):
-    """A command of `undula`, without that word; its JSON answer is kept.
+class TaskEntry(Table):
+    """A task of an item: a command of `undula`, whose JSON answer is stored.
 
-    `{out}` stands for the folder of its files, `{inputs}` for that of the catalogue's inputs, and
-    `{name}` for the folder of another task of the item, which then comes first.
+    In the command, `{out}` stands for the folder of its files, `{inputs}` for that of the
+    catalogue's inputs, and `{name}` for the folder of another task of the item, which is then
+    computed before.
     """
 
     call: str = Field(description="a command without `undula`")
@@ -51,23 +52,23 @@ class Task(Table):
     cost: float = Field(3.0, gt=0.0, description="roughly how many seconds it takes")
 
     def command(self, *, quick: bool) -> str | None:
-        """Return the command of the full or of the quick report; None if the latter has none."""
+        """Return the command in the full or the quick report; None if the quick one omits it."""
         if quick and self.only_full:
             return None
         return self.quick if quick and self.quick is not None else self.call
 
     def needs(self, *, quick: bool) -> tuple[str, ...]:
-        """Return the names of the tasks that have to come before."""
+        """Return the names of the tasks that have to be computed before."""
         names = _PLACE.findall(self.command(quick=quick) or "")
         return tuple(name for name in names if name not in _BUILT_IN)
 
 
 class Claim(Table):
-    """A statement of the paper, and the expression on answers of tasks that checks it.
+    """A claim: a statement of the paper, and an expression on answers of tasks that checks it.
 
-    The statement is about one value, or several in a list, which must not differ from the
-    published ones by more than `within`; or about a range of a parameter, `over`, and the
-    expression then gives the ends of the range over which the statement holds.
+    A claim on one value, or on several in a list, is confirmed if they differ from the published
+    ones by at most `within`. For a claim on a range of a parameter, `over`, the expression gives
+    the ends of the range over which the statement holds.
     """
 
     name: str = Field(pattern=r"^[a-z0-9-]+$", description="a name, unique within the item")
@@ -106,22 +107,22 @@ class Claim(Table):
 
     @property
     def expressions(self) -> tuple[str, ...]:
-        """All that has to be computed for it."""
+        """All expressions of the claim."""
         return tuple(text for text in (self.value, self.error, self.agrees_with) if text)
 
     @property
     def asks(self) -> frozenset[str]:
-        """Names that occur in its expressions."""
+        """Names in all expressions."""
         return _names(self.expressions)
 
     @property
     def judged_by(self) -> frozenset[str]:
-        """Names that occur in what it is judged by: all its expressions but that of the error."""
+        """Names in the expressions that determine the verdict, thus without that of the error."""
         return _names(text for text in (self.value, self.agrees_with) if text)
 
 
 class Figure(Table):
-    """A figure: a file that a task wrote, or a view drawn from answers of tasks."""
+    """A figure: a file that a task writes, or a view drawn from answers of tasks."""
 
     name: str = Field(pattern=r"^[a-z0-9-]+$", description="a name, unique within the item")
     shows: str = Field(description="the figure of the paper, or what it adds to the paper")
@@ -139,17 +140,17 @@ class Figure(Table):
 
     @property
     def asks(self) -> frozenset[str]:
-        """Names of the tasks that have to be done for it."""
+        """Names of the tasks that the figure needs."""
         return frozenset(self.of if self.file is None else _PLACE.findall(self.file))
 
     @property
     def asks_for_page(self) -> frozenset[str]:
-        """Names of the tasks that have to be done for its page."""
+        """Names of the tasks that the page needs."""
         return frozenset(_PLACE.findall(self.page or ""))
 
 
 class Movie(Table):
-    """A movie that a task wrote."""
+    """A movie that a task writes."""
 
     shows: str = Field(description="the movie of the paper")
     caption: str = Field(description="what is to be seen")
@@ -157,38 +158,38 @@ class Movie(Table):
 
     @property
     def asks(self) -> frozenset[str]:
-        """Names of the tasks that have to be done for it."""
+        """Names of the tasks that the movie needs."""
         return frozenset(_PLACE.findall(self.file))
 
 
 class Item(Table):
-    """A figure, a table or a group of statements of the paper, or what goes beyond it."""
+    """An item: a figure, a table or a group of claims of the paper, or an addition to it."""
 
     order: int = Field(description="its place in the report")
     title: str = Field(description="what it is about")
     paper: str = Field(description="where it is in the paper; empty for what goes beyond it")
     about: str = Field(description="what was done")
     uses: dict[str, str] = Field({}, description="tasks of other items, by the names used here")
-    tasks: dict[str, Task] = Field({}, description="commands by name")
+    tasks: dict[str, TaskEntry] = Field({}, description="commands by name")
     claims: list[Claim] = Field([], description="statements")
     figures: list[Figure] = Field([], description="figures")
     movies: list[Movie] = Field([], description="movies")
 
 
 class Paper(Table):
-    """What the catalogue is about."""
+    """The paper of a catalogue."""
 
     title: str = Field(description="the title of the report")
     about: str = Field(description="which paper, and what was done with it")
 
 
 def paper_of(folder: Path) -> Paper:
-    """Return what a catalogue is about.
+    """Return the paper of a catalogue.
 
     Raises
     ------
     InputError
-        Its file is missing or wrong.
+        The file `paper.toml` is missing or wrong.
     """
     return _read(folder / _PAPER, Paper)
 
@@ -199,7 +200,7 @@ def catalogue(folder: Path = CATALOGUE) -> dict[str, Item]:
     Raises
     ------
     InputError
-        There are none, a file is no item, or refers to something that is not there.
+        The folder holds no items, or a file is not an item or refers to something missing.
     """
     files = sorted(path for path in folder.glob("*.toml") if path.name != _PAPER)
     if not files:
@@ -213,12 +214,12 @@ def catalogue(folder: Path = CATALOGUE) -> dict[str, Item]:
 
 
 def chosen(items: dict[str, Item], names: tuple[str, ...]) -> dict[str, Item]:
-    """Return the items of these names, all without any, in the order of the report.
+    """Return the items of given names in the order of the report; all items without names.
 
     Raises
     ------
     InputError
-        There is no such item.
+        An item is unknown.
     """
     for name in names:
         if name not in items:
@@ -247,19 +248,19 @@ def _names(expressions: Iterable[str]) -> frozenset[str]:
     return frozenset(node.id for node in nodes if isinstance(node, ast.Name))
 
 
-def task_of(name: str, item: Item, items: Mapping[str, Item], local: str) -> Task:
-    """Return a task by the name that an item uses, its own or that of another."""
+def task_of(name: str, item: Item, items: Mapping[str, Item], local: str) -> TaskEntry:
+    """Return a task by the name that an item uses for it, which may belong to another item."""
     owner, _, task = item.uses.get(local, f"{name}/{local}").partition("/")
     return items[owner].tasks[task]
 
 
 def _check_values(folder: Path, name: str, item: Item, items: Mapping[str, Item]) -> None:
-    """Refuse claims that the whole report would compute at other values than their own."""
-    known = {*item.tasks, *item.uses}
+    """Refuse claims that the full report would compute at other values than the claim's."""
+    tasks = {*item.tasks, *item.uses}
     for claim in item.claims:
         computed = {
             local: values_of_call(task_of(name, item, items, local).call, folder / "inputs")
-            for local in (claim.judged_by & known if claim.at else ())
+            for local in (claim.judged_by & tasks if claim.at else ())
         }
         trouble = other_values(claim.at, computed)
         if trouble:
@@ -273,14 +274,16 @@ def _check(name: str, item: Item, items: dict[str, Item]) -> None:
         owner, _, task = place.partition("/")
         if owner not in items or task not in items[owner].tasks:
             raise InputError(f"{name}.toml: uses.{local} = {place!r} is no task of an item")
-    known = {*item.tasks, *item.uses}
+    tasks = {*item.tasks, *item.uses}
     figures = {figure.name for figure in item.figures}
-    needed = [(f"task {key}", one.needs(quick=False)) for key, one in item.tasks.items()]
-    needed += [(f"figure {one.name}", (*one.asks, *one.asks_for_page)) for one in item.figures]
-    needed += [("a movie", tuple(one.asks)) for one in item.movies]
-    for who, names in needed:
-        for missing in set(names) - known:
-            raise InputError(f"{name}.toml: {who} needs {missing}, which is no task of the item")
+    needed = [(f"task {local}", task.needs(quick=False)) for local, task in item.tasks.items()]
+    needed += [
+        (f"figure {figure.name}", (*figure.asks, *figure.asks_for_page)) for figure in item.figures
+    ]
+    needed += [("a movie", tuple(movie.asks)) for movie in item.movies]
+    for user, names in needed:
+        for missing in set(names) - tasks:
+            raise InputError(f"{name}.toml: {user} needs {missing}, which is no task of the item")
     for claim in item.claims:
         if claim.figure is not None and claim.figure not in figures:
             raise InputError(f"{name}.toml: claim {claim.name} names no figure {claim.figure}")

@@ -1,6 +1,6 @@
-"""Computations that show slips of the paper: in its units, its test functions, its coordinates.
+"""Computations for the errata of the paper in units, test functions and coordinates.
 
-What is wrong with thresholds, frequencies and energies is shown by the commands themselves.
+Errata of thresholds, frequencies and energies follow from the answers of commands.
 """
 
 import numpy as np
@@ -21,14 +21,14 @@ __all__ = [
     "twist_over_bending",
 ]
 
-#: Modes that are looked at; the fifth and later ones have hyperbolic functions beyond 1e6.
+#: Number of modes; the hyperbolic functions of further modes exceed 1e6.
 MODES = 4
-#: Turns so small that their energies are quadratic to 1e-6.
+#: Turn of a link for which energies are quadratic to a relative accuracy of 1e-6 [rad].
 _SMALL = 1e-3
 
 
 def second_moment_over_area_squared() -> float:
-    """Return I/A² of a disc, by integration over strips: bending stiffness is E I, not E A²."""
+    """Return I/A² of a disc by integration over strips; the bending stiffness is E I, not E A²."""
     moment, _ = quad(lambda y: y * y * 2.0 * np.sqrt(1.0 - y * y), -1.0, 1.0)
     area, _ = quad(lambda y: 2.0 * np.sqrt(1.0 - y * y), -1.0, 1.0)
     return float(moment / area**2)
@@ -37,7 +37,8 @@ def second_moment_over_area_squared() -> float:
 def twist_over_bending(poisson: float) -> float:
     """Return the twist stiffness of a circular section over its bending stiffness.
 
-    They are G J and E I with J = 2 I, by integration, and the shear modulus G = E / (2 (1 + ν)).
+    The twist stiffness is G J and the bending stiffness E I, with I and J by integration and the
+    shear modulus G = E / (2 (1 + ν)).
     """
     moment, _ = quad(lambda y: y * y * 2.0 * np.sqrt(1.0 - y * y), -1.0, 1.0)
     polar, _ = quad(lambda r: r * r * 2.0 * np.pi * r, 0.0, 1.0)
@@ -45,7 +46,7 @@ def twist_over_bending(poisson: float) -> float:
 
 
 def springs_of_chain(links: int) -> float:
-    """Return how many springs a chain has: the energy of all joints bent, in that of one."""
+    """Return the number of springs of a chain: energy of all bent joints over that of one."""
     model = Chain(links, TipLoad(0.0))
 
     def energy(turns: Points) -> float:
@@ -54,13 +55,13 @@ def springs_of_chain(links: int) -> float:
         nodes = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
         return float(model.energy(model.from_nodes(nodes)))
 
-    one = np.zeros(links)
-    one[-1] = _SMALL
-    return energy(np.full(links, _SMALL)) / energy(one)
+    single = np.zeros(links)
+    single[-1] = _SMALL
+    return energy(np.full(links, _SMALL)) / energy(single)
 
 
 def free_end_residual() -> float:
-    """Return the largest moment or shear at the free end of a mode with the printed b."""
+    """Return the largest moment or shear at the free end of the modes with the printed b."""
     worst = 0.0
     for a in _roots():
         b = (np.cos(a) + np.cosh(a)) / (np.sin(a) + np.sinh(a))
@@ -71,7 +72,7 @@ def free_end_residual() -> float:
 
 
 def rank_of_test_functions(count: int) -> int:
-    """Return how many of so many test functions are independent, each the sum of all modes."""
+    """Return the rank of `count` test functions, each of which is the sum of all modes."""
     s = np.linspace(0.0, 1.0, 201)
     modes = np.array([_mode(a, s) for a in _roots()])
     functions = np.array([modes.sum(axis=0) for _ in range(count)])
@@ -79,7 +80,7 @@ def rank_of_test_functions(count: int) -> int:
 
 
 def power_of_length_in_chain_time() -> float:
-    """Return a such that ζ L^a / K is a time, with ζ the drag force per velocity of a bead."""
+    """Return the exponent a for which ζ L^a / K is a time, with ζ the drag of a bead."""
     # Rows: exponents of kg, m, s. A drag coefficient is kg/s, K an energy kg m²/s².
     drag, spring, time = np.array([1, 0, -1]), np.array([1, 2, -2]), np.array([0, 0, 1])
     length = np.array([0, 1, 0])
@@ -88,7 +89,7 @@ def power_of_length_in_chain_time() -> float:
 
 
 def rank_of_angles_at_straight() -> int:
-    """Return how many directions the angles θ, φ turn a link to that stands along the axis."""
+    """Return the number of directions in which the angles θ, φ turn a link along the axis."""
     theta, phi = np.pi / 2.0, 0.3
     along_theta = [-np.sin(theta) * np.cos(phi), -np.sin(theta) * np.sin(phi), np.cos(theta)]
     along_phi = [-np.cos(theta) * np.sin(phi), np.cos(theta) * np.cos(phi), 0.0]

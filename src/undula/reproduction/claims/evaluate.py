@@ -1,4 +1,4 @@
-"""Statements held against what was computed: value, error and verdict of each claim."""
+"""Evaluation of claims: value, error and verdict of each claim from answers of commands."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 
 from undula.errors import InputError
-from undula.reproduction.claims import errata as slips
-from undula.reproduction.claims import measures
-from undula.reproduction.claims import sweep_measures as study_measures
+from undula.reproduction.claims import answer_measures, errata, measures, sweep_measures
 from undula.reproduction.claims.catalogue import (
     CONFIRMED,
     CORRECTED,
@@ -19,10 +17,10 @@ from undula.reproduction.claims.catalogue import (
     Claim,
 )
 
-_ROOMS = (measures, study_measures, slips)
-#: What expressions may use besides the answers.
+_MODULES = (measures, answer_measures, sweep_measures, errata)
+#: Names for expressions, in addition to the answers.
 _WORDS: Mapping[str, Any] = {
-    **{name: getattr(room, name) for room in _ROOMS for name in room.__all__},
+    **{name: getattr(module, name) for module in _MODULES for name in module.__all__},
     **{word.__name__: word for word in (abs, all, any, float, len, max, min, round, sorted, sum)},
     "log": np.log,
     "pi": np.pi,
@@ -30,8 +28,8 @@ _WORDS: Mapping[str, Any] = {
 }
 
 
-class Rows:
-    """Rows of an answer, such as the points of a branch: one array for each key."""
+class AnswerRows:
+    """List of records in an answer, such as the points of a branch, as one array for each key."""
 
     def __init__(self, rows: Sequence[Mapping[str, Any]]) -> None:
         self._rows = rows
@@ -41,11 +39,11 @@ class Rows:
         return len(self._rows)
 
     def __getitem__(self, key: str | int) -> Any:
-        """Return the values of a key, one deeper down as `energy/max`, or the row of a number."""
+        """Return the values of a key, of a nested key such as `energy/max`, or one row."""
         if isinstance(key, int):
             return _opened(self._rows[key])
         path = key.split("/")
-        values = [_at(row, path) for row in self._rows]
+        values = [_nested(row, path) for row in self._rows]
         if all(isinstance(value, str) for value in values):
             return np.array(values, dtype=object)
         return np.array([np.nan if value is None else value for value in values], dtype=float)
@@ -57,8 +55,16 @@ class Rows:
         return self[key]
 
 
-class Answer(Mapping[str, Any]):
-    """The JSON answer of a command, with its keys as attributes, and the folder of its files."""
+class ClaimAnswer(Mapping[str, Any]):
+    """The JSON answer of a command, with its keys as attributes.
+
+    Parameters
+    ----------
+    answer
+        The answer in plain JSON types.
+    folder
+        Folder of the files of the command; None without files.
+    """
 
     def __init__(self, answer: Mapping[str, Any], folder: Path | None = None) -> None:
         self._answer = answer
@@ -69,7 +75,7 @@ class Answer(Mapping[str, Any]):
         return _opened(self._answer[key])
 
     def __iter__(self) -> Any:
-        """Go through the keys."""
+        """Iterate over the keys."""
         return iter(self._answer)
 
     def __len__(self) -> int:
@@ -84,19 +90,23 @@ class Answer(Mapping[str, Any]):
             raise AttributeError(f"the answer has no {key}") from None
 
 
+#: Answers of tasks by name.
+Answers = Mapping[str, ClaimAnswer]
+
+
 @dataclass(frozen=True)
 class Outcome:
-    """What a claim came to.
+    """Outcome of the check of a claim.
 
     Attributes
     ----------
     value, error
-        A number, a word, a truth value, or a list of numbers; with the error of numbers if it is
-        known.
+        A number, a word, a truth value or a list of numbers; errors are those of numbers, None if
+        unknown.
     verdict
-        In words; None if the claim could not be checked.
+        Verdict in words; None if the claim could not be checked.
     reason
-        Why it could not; empty otherwise.
+        Cause of a missing verdict, else empty.
     """
 
     value: Any
@@ -105,25 +115,25 @@ class Outcome:
     reason: str = ""
 
 
-def judge(claim: Claim, answers: Mapping[str, Answer]) -> Outcome:
+def judge(claim: Claim, answers: Answers) -> Outcome:
     """Check a claim against the answers of the tasks that it names.
 
     Parameters
     ----------
     claim
-        The statement.
+        The claim.
     answers
-        By name, at least those that it asks for.
+        Answers of tasks by name, at least those that the claim uses.
 
     Returns
     -------
     Outcome
-        A claim whose expression fails, as when a state was not found, has no verdict but a reason.
+        A claim whose expression fails, as without a state, has a reason in place of a verdict.
 
     Raises
     ------
     InputError
-        An expression is not Python, or uses a word that is not known.
+        An expression is not Python, or uses an unknown name.
     """
     try:
         value = _plain(_evaluate(claim, claim.value, answers))
@@ -159,13 +169,13 @@ def _verdict(claim: Claim, value: Any) -> str:
 def _close(value: Any, published: Any, within: float) -> bool:
     if isinstance(published, str | bool) or isinstance(value, str | bool):
         return bool(value == published)
-    ours, theirs = np.atleast_1d(value).astype(float), np.atleast_1d(published).astype(float)
-    return ours.shape == theirs.shape and bool((np.abs(ours - theirs) <= within).all())
+    computed, stated = np.atleast_1d(value).astype(float), np.atleast_1d(published).astype(float)
+    return computed.shape == stated.shape and bool((np.abs(computed - stated) <= within).all())
 
 
-def _evaluate(claim: Claim, text: str, answers: Mapping[str, Answer]) -> Any:
-    # A catalogue is trusted like code. That built-in words are missing here catches slips of the
-    # pen; it does not make a stranger's file safe.
+def _evaluate(claim: Claim, text: str, answers: Answers) -> Any:
+    # A catalogue is trusted like code. Built-in names are left out to detect typing errors, which
+    # does not make untrusted files safe.
     try:
         return eval(text.strip(), {"__builtins__": {}, **_WORDS, **answers})
     except (NameError, SyntaxError) as error:
@@ -174,13 +184,14 @@ def _evaluate(claim: Claim, text: str, answers: Mapping[str, Answer]) -> Any:
 
 def _opened(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return Answer(value)
-    if isinstance(value, list) and value and all(isinstance(one, Mapping) for one in value):
-        return Rows(value)
+        return ClaimAnswer(value)
+    if isinstance(value, list) and value and all(isinstance(entry, Mapping) for entry in value):
+        return AnswerRows(value)
     return value
 
 
-def _at(row: Any, path: Sequence[str]) -> Any:
+def _nested(row: Any, path: Sequence[str]) -> Any:
+    """Return the value of a nested key; None if an outer key has no value."""
     for key in path:
         row = None if row is None else row[key]
     return row
@@ -189,9 +200,9 @@ def _at(row: Any, path: Sequence[str]) -> Any:
 def _plain(value: Any) -> Any:
     """Return a value in plain JSON types."""
     if isinstance(value, np.ndarray):
-        return [_plain(one) for one in value.tolist()]
+        return [_plain(entry) for entry in value.tolist()]
     if isinstance(value, tuple | list):
-        return [_plain(one) for one in value]
+        return [_plain(entry) for entry in value]
     if isinstance(value, np.generic):
         return _plain(value.item())
     if isinstance(value, int) and not isinstance(value, bool):

@@ -1,6 +1,7 @@
-"""What the claims of the catalogue measure on answers, beyond arithmetic.
+"""Functions for the expressions of claims, on curves.
 
-Curves are points in any order; a claim on a range asks where a condition holds without a gap.
+The points of a curve may be in any order. A claim on a range needs the interval over which a
+condition holds without a gap.
 """
 
 from collections.abc import Callable
@@ -18,60 +19,78 @@ __all__ = [
     "exactly",
     "falling",
     "first_present",
-    "forces",
-    "gaining",
     "holding",
     "holding_error",
-    "largest_spread",
     "minimum",
     "missing",
     "on",
     "peak",
     "peak_error",
-    "regimes",
     "roundoff",
-    "slowness",
-    "spinning_energy",
 ]
-
-FORCE = "load.force"
 
 
 def at(where: float, of: ArrayLike, values: ArrayLike) -> float:
-    """Return the value of a curve at a place, by the parabola through three points around it.
+    """Interpolate a curve at one place by the parabola through three points around it.
+
+    Parameters
+    ----------
+    where
+        The place.
+    of, values
+        Places and values of the curve.
 
     Raises
     ------
     ValueError
-        The place is outside.
+        The place is outside of the curve.
     """
-    places, known = _sorted(of, values)
+    places, heights = _sorted(of, values)
     if not places[0] <= where <= places[-1]:
         raise ValueError(f"{where:g} is outside of {places[0]:g} to {places[-1]:g}")
     middle = int(np.clip(np.searchsorted(places, where), 1, len(places) - 2))
     near = slice(middle - 1, middle + 2)
-    return float(_parabola(places[near] - where, known[near])[0])
+    return float(_parabola(places[near] - where, heights[near])[0])
 
 
 def exactly(where: float, of: ArrayLike, values: ArrayLike) -> float:
-    """Return what was computed at a place itself.
+    """Return the value of a curve at one of its own points.
+
+    Parameters
+    ----------
+    where
+        The place, or several places.
+    of
+        Places of the curve.
+    values
+        Values of the curve.
 
     Raises
     ------
     ValueError
-        Nothing was.
+        The curve has no point there.
     """
-    found = np.flatnonzero(np.asarray(of, dtype=float) == where)
-    if not len(found):
+    matches = np.flatnonzero(np.asarray(of, dtype=float) == where)
+    if not len(matches):
         raise ValueError(f"nothing was computed at {where:g}")
-    return float(np.asarray(values, dtype=float)[found[0]])
+    return float(np.asarray(values, dtype=float)[matches[0]])
 
 
 def on(where: ArrayLike, of: ArrayLike, values: ArrayLike) -> Points:
-    """Return a curve at several places, from the nearest three of its own points each."""
-    places, known = _sorted(of, values)
-    wanted = np.asarray(where, dtype=float)
-    return np.array([at(min(max(one, places[0]), places[-1]), places, known) for one in wanted])
+    """Interpolate a curve at several places as `at` does; beyond its ends it is constant.
+
+    Parameters
+    ----------
+    where
+        The place, or several places.
+    of
+        Places of the curve.
+    values
+        Values of the curve.
+    """
+    places, heights = _sorted(of, values)
+    inside = np.clip(np.asarray(where, dtype=float), places[0], places[-1])
+    return np.array([at(place, places, heights) for place in inside])
 
 
 def holding(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
@@ -82,140 +101,143 @@ def holding(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
     of
         Places.
     condition
-        Positive where it holds; the range ends where it passes through zero, or with the places.
+        Values that are positive where the condition holds; the range ends at a zero, or with the
+        places.
     around
-        A place inside.
+        A place inside the range.
 
     Raises
     ------
     ValueError
-        It does not hold there.
+        The condition does not hold at `around`.
     """
     return _range(*_sorted(of, condition), around, _zero)
 
 
 def holding_error(of: ArrayLike, condition: ArrayLike, around: float) -> list[float]:
-    """Return the errors of the ends: what a straight line between points would make of them."""
+    """Return the errors of the ends of `holding`: the difference to linear interpolation.
+
+    Parameters
+    ----------
+    of
+        Places of the curve.
+    condition
+        Values that are positive where the condition holds.
+    around
+        A place inside the range.
+    """
     places, margin = _sorted(of, condition)
     smooth, straight = (_range(places, margin, around, zero) for zero in (_zero, _straight_zero))
-    return [abs(one - other) for one, other in zip(smooth, straight, strict=True)]
+    return [abs(end - other) for end, other in zip(smooth, straight, strict=True)]
 
 
 def crossing(of: ArrayLike, values: ArrayLike) -> float:
     """Return the first place at which a curve passes through zero.
 
+    Parameters
+    ----------
+    of
+        Places of the curve.
+    values
+        Values of the curve.
+
     Raises
     ------
     ValueError
-        It does not.
+        The curve has no zero.
     """
-    places, known = _sorted(of, values)
-    changes = np.flatnonzero(np.sign(known[1:]) != np.sign(known[:-1]))
+    places, heights = _sorted(of, values)
+    changes = np.flatnonzero(np.sign(heights[1:]) != np.sign(heights[:-1]))
     if not len(changes):
         raise ValueError("the values do not pass through zero")
-    return _zero(places, known, int(changes[0]))
+    return _zero(places, heights, int(changes[0]))
 
 
 def peak(of: ArrayLike, values: ArrayLike) -> float:
-    """Return the place of the first maximum of a curve inside of its ends.
+    """Return the place of the first maximum of a curve inside its ends.
+
+    Parameters
+    ----------
+    of
+        Places of the curve.
+    values
+        Values of the curve.
 
     Raises
     ------
     ValueError
-        There is none.
+        The curve has no maximum inside.
     """
-    places, known = _sorted(of, values)
-    inner = known[1:-1]
-    tops = np.flatnonzero((inner > known[:-2]) & (inner >= known[2:])) + 1
+    places, heights = _sorted(of, values)
+    inner = heights[1:-1]
+    tops = np.flatnonzero((inner > heights[:-2]) & (inner >= heights[2:])) + 1
     if not len(tops):
         raise ValueError("the values have no maximum inside")
     top = int(tops[0])
-    flat = CubicSpline(places, known).derivative().roots(extrapolate=False)
+    flat = CubicSpline(places, heights).derivative().roots(extrapolate=False)
     return float(flat[np.abs(flat - places[top]).argmin()])
 
 
 def peak_error(of: ArrayLike, values: ArrayLike) -> float:
-    """Return the error of that place: what a parabola through the three greatest makes of it."""
-    places, known = _sorted(of, values)
-    found = peak(places, known)
-    middle = int(np.clip(np.abs(places - found).argmin(), 1, len(places) - 2))
+    """Return the error of `peak`: the difference to the parabola through the nearest points.
+
+    Parameters
+    ----------
+    of
+        Places of the curve.
+    values
+        Values of the curve.
+    """
+    places, heights = _sorted(of, values)
+    top = peak(places, heights)
+    middle = int(np.clip(np.abs(places - top).argmin(), 1, len(places) - 2))
     near = slice(middle - 1, middle + 2)
-    _, slope, bend = _parabola(places[near] - found, known[near])
-    return float(abs(slope / (2.0 * bend)))
+    _, slope, curvature = _parabola(places[near] - top, heights[near])
+    return float(abs(slope / (2.0 * curvature)))
 
 
 def minimum(first: ArrayLike, second: ArrayLike) -> Points:
-    """Return the smaller of two values, place by place: both conditions have to hold."""
+    """Return the smaller of two values at each place, for two conditions that both have to hold.
+
+    Parameters
+    ----------
+    first
+        Values of the first condition.
+    second
+        Values of the second condition.
+    """
     return np.asarray(np.minimum(first, second), dtype=float)
 
 
 def falling(values: ArrayLike) -> bool:
-    """Return whether every value is smaller than the one before."""
+    """Return True if every value is smaller than the one before."""
     return bool((np.diff(np.asarray(values, dtype=float)) < 0.0).all())
 
 
 def missing(values: ArrayLike) -> Any:
-    """Return where an answer has no value."""
+    """Return a mask of the places without a value."""
     return np.isnan(np.asarray(values, dtype=float))
 
 
 def first_present(of: ArrayLike, values: ArrayLike) -> list[float]:
-    """Return the place from which on there are values, and half of the gap before as its error."""
-    places, known = _sorted(of, values)
-    first = int(np.flatnonzero(~np.isnan(known))[0])
+    """Return the beginning of the values, in the middle of the gap before, and its error.
+
+    Parameters
+    ----------
+    of
+        Places of the curve.
+    values
+        Values of the curve.
+    """
+    places, heights = _sorted(of, values)
+    first = int(np.flatnonzero(~np.isnan(heights))[0])
     low = places[max(first - 1, 0)]
     return [float((low + places[first]) / 2.0), float((places[first] - low) / 2.0)]
 
 
-def forces(branch: Any, *, above: float = 0.0) -> Points:
-    """Return the forces of the points of a branch, of those above a force."""
-    every = np.asarray(branch.points[FORCE], dtype=float)
-    return every[every > above]
-
-
-def gaining(branch: Any) -> float:
-    """Return the least force at which the states of a branch gain stability.
-
-    Raises
-    ------
-    ValueError
-        They never do.
-    """
-    gained = branch.bifurcations.value[branch.bifurcations.stability == "gained"]
-    if not len(gained):
-        raise ValueError("no state of the branch gains stability")
-    return float(gained.min())
-
-
-def spinning_energy(branch: Any, *, above: float = 0.0) -> Points:
-    """Return the bending energies of the points of a branch of spinning states."""
-    every = np.asarray(branch.points.bending_energy, dtype=float)
-    return every[np.asarray(branch.points[FORCE], dtype=float) > above]
-
-
 def roundoff(value: float) -> float:
-    """Return the round-off of a value that took a few operations."""
+    """Return the round-off error of a value after a few operations."""
     return float(4.0 * np.finfo(float).eps * abs(value))
-
-
-def slowness(spinning: Any, flapping: Any) -> Points:
-    """Return 1 - flapping/spinning of the frequencies, at the points of the branch of flapping."""
-    fast = on(forces(flapping), spinning.points[FORCE], spinning.points.frequency)
-    return 1.0 - np.asarray(flapping.points.frequency, dtype=float) / fast
-
-
-def regimes(steps: Any) -> str:
-    """Return the verdicts of a series of steps in their order, without what is undecided."""
-    order = [verdict for verdict in steps.regimes.verdict if verdict != "undecided"]
-    return ", ".join(dict.fromkeys(order))
-
-
-def largest_spread(steps: Any, verdict: str) -> float:
-    """Return the largest relative range of the bending energy among steps of one verdict."""
-    wanted = steps.steps.verdict == verdict
-    low, high = steps.steps["bending_energy/min"], steps.steps["bending_energy/max"]
-    mean = steps.steps["bending_energy/mean"]
-    return float(((high - low) / mean)[wanted].max())
 
 
 def _parabola(places: Points, values: Points) -> Points:
@@ -238,12 +260,12 @@ def _range(
 
 
 def _zero(places: Points, values: Points, left: int) -> float:
-    """Return where a smooth curve passes through zero right of a point."""
+    """Return the zero of the cubic spline to the right of a point."""
     if not np.isfinite(values).all():
         return _straight_zero(places, values, left)
     roots = CubicSpline(places, values).roots(extrapolate=False)
-    here = roots[(roots >= places[left]) & (roots <= places[left + 1])]
-    return float(here[0])
+    inside = roots[(roots >= places[left]) & (roots <= places[left + 1])]
+    return float(inside[0])
 
 
 def _straight_zero(places: Points, values: Points, left: int) -> float:
@@ -252,8 +274,8 @@ def _straight_zero(places: Points, values: Points, left: int) -> float:
 
 
 def _sorted(of: ArrayLike, values: ArrayLike) -> tuple[Points, Points]:
-    places, known = np.asarray(of, dtype=float), np.asarray(values, dtype=float)
+    places, heights = np.asarray(of, dtype=float), np.asarray(values, dtype=float)
     if len(places) < 3:
         raise ValueError(f"a curve of {len(places)} points is too short")
     order = np.argsort(places, kind="stable")
-    return places[order], known[order]
+    return places[order], heights[order]

@@ -1,6 +1,6 @@
-"""The values that a statement is about, held against those of the commands that compute it.
+"""Parameter values of claims, compared with those of the commands that compute them.
 
-A statement on F = 180 says nothing about F = 150: it is judged at its own values, or not at all.
+A claim on F = 180 does not extend to F = 150: it is judged at its own values, or not at all.
 """
 
 import shlex
@@ -11,29 +11,29 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from undula.inputs.input import ModelInput, StudyInput, read_tables
+from undula.inputs.input import ModelInput, SweepInput, read_tables
 from undula.inputs.ranges import parse_axis, parse_steps, parse_values, parse_way
 from undula.inputs.sweep_table import AxisTable
 from undula.models.units import chain_units
 
 FORCE = "load.force"
-#: The commands that compute anything from an input.
+#: Commands that compute from an input.
 _COMPUTING = ("find", "follow", "run", "stability", "step", "sweep", "threshold")
-#: Number of the words that stand between such a command and its options.
+#: Number of words between such a command and its options.
 _WORDS = {"find": 1, "follow": 1, "threshold": 1, "sweep": 1}
 
 
 @dataclass(frozen=True)
 class Values:
-    """What a command is about.
+    """Parameter values of a command.
 
     Attributes
     ----------
     fixed
-        Values of keys of the model and the load. The force of a chain is there as well in units of
-        single links, as ``load.force [K/l]``.
+        Values of keys of model and load. For a chain they include the force in units of single
+        links, as ``load.force [K/l]``.
     swept
-        Least and greatest value of keys that the command goes over.
+        Least and greatest value of the keys that the command varies.
     """
 
     fixed: Mapping[str, Any] = field(default_factory=dict)
@@ -41,54 +41,63 @@ class Values:
 
 
 def values_of(command: Sequence[str]) -> Values:
-    """Return what a command of `undula` is about.
+    """Return the parameter values of a command.
 
     Parameters
     ----------
     command
-        Its words, without `undula`.
+        Words of the command, without `undula`.
 
     Raises
     ------
     InputError
-        Its input is wrong.
+        The input of the command is wrong.
     """
     return _values(tuple(command))
 
 
 def values_of_call(call: str, inputs: Path) -> Values:
-    """Return what a command of a catalogue is about, whose input files are in a folder."""
+    """Return the parameter values of a command in the catalogue, with its folder of inputs.
+
+    Parameters
+    ----------
+    call
+        The command in the catalogue.
+    inputs
+        Folder of the input files.
+    """
     return values_of(shlex.split(call.replace("{inputs}", str(inputs))))
 
 
 def other_values(stated: Mapping[str, Any], computed: Mapping[str, Values]) -> str:
-    """Return why commands do not compute a statement at its own values; empty if they do.
+    """Return the difference between the values of a claim and of its commands; empty without.
 
     Parameters
     ----------
     stated
-        Keys of the input, each with the value that the statement is about, or with several.
+        Value, or list of values, of the claim by key of the input.
     computed
-        What the commands behind the statement are about, by their names. One that does not know a
-        key has nothing to do with it.
+        Values of the commands of the claim by name. A command without a key does not depend on it.
     """
-    for key, given in stated.items():
-        wanted = given if isinstance(given, list) else [given]
-        found: list[Any] = []
+    for key, value_or_list in stated.items():
+        wanted = value_or_list if isinstance(value_or_list, list) else [value_or_list]
+        covered: list[Any] = []
         for name, values in computed.items():
             if key in values.swept:
                 low, high = values.swept[key]
-                found += [value for value in wanted if low <= value <= high]
+                covered += [value for value in wanted if low <= value <= high]
             elif key in values.fixed:
-                found.append(values.fixed[key])
+                covered.append(values.fixed[key])
                 if values.fixed[key] not in wanted:
                     return (
-                        f"{name} is computed at {key} = {_told([values.fixed[key]])}, and the"
-                        f" statement is about {_told(wanted)}"
+                        f"{name} is computed at {key} = {_listed([values.fixed[key]])}, and the"
+                        f" statement is about {_listed(wanted)}"
                     )
-        missing = [value for value in wanted if value not in found]
+        missing = [value for value in wanted if value not in covered]
         if missing:
-            return f"nothing is computed at {key} = {_told(missing)}, which the statement is about"
+            return (
+                f"nothing is computed at {key} = {_listed(missing)}, which the statement is about"
+            )
     return ""
 
 
@@ -98,27 +107,27 @@ def _values(command: tuple[str, ...]) -> Values:
     if verb not in _COMPUTING:
         return Values()
     options = command[1 + _WORDS.get(verb, 0) :]
-    given = [value for option, value in pairwise(options) if option == "--set"]
-    path, record = (Path(command[1]), StudyInput) if verb == "sweep" else (None, ModelInput)
-    # Of starts and times nothing is stated, and some commands have their own.
-    told = [change for change in given if change.startswith(("model.", "load."))]
-    wanted = read_tables(record, path, told)[1]
+    changes = [value for option, value in pairwise(options) if option == "--set"]
+    path, record = (Path(command[1]), SweepInput) if verb == "sweep" else (None, ModelInput)
+    # Claims state no starts and times, and some commands have their own.
+    changes = [change for change in changes if change.startswith(("model.", "load."))]
+    wanted = read_tables(record, path, changes)[1]
     fixed = {
         f"{name}.{key}": getattr(table, key)
         for name, table in (("model", wanted.model), ("load", wanted.load))
         for key in table.dump()
     }
     swept = _swept(verb, options)
-    if isinstance(wanted, StudyInput):
+    if isinstance(wanted, SweepInput):
         swept |= {axis.key: _ends(axis) for axis in wanted.study.axes}
     if wanted.model.kind == "chain":
         for unit, factor in chain_units(wanted.model.links).forces.items():
             fixed[f"{FORCE} [{unit}]"] = wanted.load.force * factor
     if verb == "threshold":
-        # The force is what is looked for.
+        # The command solves for the force.
         swept.setdefault(FORCE, (0.0, float("inf")))
-    gone = {key for key in fixed if key.partition(" ")[0] in swept}
-    return Values({key: value for key, value in fixed.items() if key not in gone}, swept)
+    varied = {key for key in fixed if key.partition(" ")[0] in swept}
+    return Values({key: value for key, value in fixed.items() if key not in varied}, swept)
 
 
 def _swept(verb: str, options: Sequence[str]) -> dict[str, tuple[float, float]]:
@@ -139,9 +148,11 @@ def _swept(verb: str, options: Sequence[str]) -> dict[str, tuple[float, float]]:
 
 def _ends(axis: AxisTable) -> tuple[float, float]:
     values = axis.values or (axis.start, axis.to)
-    known = [float(value) for value in values if value is not None]
-    return min(known), max(known)
+    numbers = [float(value) for value in values if value is not None]
+    return min(numbers), max(numbers)
 
 
-def _told(values: Sequence[Any]) -> str:
-    return ", ".join(f"{one:.6g}" if isinstance(one, float | int) else str(one) for one in values)
+def _listed(values: Sequence[Any]) -> str:
+    return ", ".join(
+        f"{value:.6g}" if isinstance(value, float | int) else str(value) for value in values
+    )

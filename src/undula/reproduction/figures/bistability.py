@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from undula.reproduction.figures.branch_panels import Pair, last_force, read_pair
+from undula.reproduction.figures.branch_panels import STRAIGHT, Pair, last_force, read_pair
 from undula.reproduction.figures.same_units import same_units
 from undula.views.common import style
 from undula.views.common.panels import legend_above, letter_axes
@@ -83,8 +83,8 @@ def _draw(axes: Axes, pair: Pair, both: list[Interval]) -> None:
     onsets = [drawn.branch.onset for drawn in pair if drawn.branch.onset is not None]
     if onsets:
         onset = float(np.mean(onsets))
-        _bar(axes, 0, (0.0, onset), style.INK, stable=True)
-        _bar(axes, 0, (onset, last_force(pair)), style.INK, stable=False)
+        _bar(axes, 0, (0.0, onset), STRAIGHT[0], stable=True)
+        _bar(axes, 0, (onset, last_force(pair)), STRAIGHT[0], stable=False)
     for row, branch in enumerate(pair, start=1):
         for part, stable in branch.line.parts:
             forces = branch.line.values[part]

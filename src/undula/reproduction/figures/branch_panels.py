@@ -14,9 +14,12 @@ from undula.views.branches.named_branches import NamedBranch, draw_parts
 from undula.views.branches.smooth_lines import smooth_line
 from undula.views.common import style
 from undula.views.common.labels import Label
+from undula.views.common.verdict_styles import look_of
 
-#: Colour and name of each kind of branch.
-SPINNING, FLAPPING = (style.X_COLOUR, "spinning"), (style.Y_COLOUR, "planar flapping")
+#: Colour and name of each kind of state.
+STRAIGHT, SPINNING, FLAPPING = (
+    (look_of(verdict).colour, verdict) for verdict in ("straight", "spinning", "planar flapping")
+)
 #: Width [points] and dashes of stable and of unstable parts.
 _PARTS: Mapping[bool, tuple[float, Any]] = {True: (2.1, "-"), False: (1.2, (0, (3.6, 2.0)))}
 

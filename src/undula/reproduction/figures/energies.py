@@ -15,6 +15,7 @@ from matplotlib.patches import Patch
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.reproduction.figures.branch_panels import (
+    FLAPPING,
     Pair,
     branch_handles,
     draw_branch,
@@ -82,7 +83,7 @@ def bending_energies(spinning: Mapping[str, Any], flapping: Mapping[str, Any]) -
         lower.set_xlabel(style.force_label(units))
         figure.align_ylabels([upper, lower])
         law = Line2D([], [], color=style.INK, lw=1.3, ls=":", label=r"$\ln(F - 38.7)$, paper")
-        envelope = Patch(color=style.Y_COLOUR, alpha=0.2, label="envelope over a beat")
+        envelope = Patch(color=FLAPPING[0], alpha=0.2, label="envelope over a beat")
         legend_above(figure, [*branch_handles(pair), envelope, law], _EDGES[0])
     return figure
 

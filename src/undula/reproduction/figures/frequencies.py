@@ -20,6 +20,7 @@ from matplotlib.ticker import MaxNLocator
 from undula.arrays import Array
 from undula.errors import InputError, is_number
 from undula.reproduction.figures.branch_panels import (
+    STRAIGHT,
     Pair,
     branch_handles,
     draw_branch,
@@ -139,7 +140,7 @@ def _labels(rows: Rows, pair: Pair, end: float, edges: tuple[float, float]) -> l
     force = _loss(rows)
     if force is not None and force <= end:
         place = edges[0] + (edges[1] - edges[0]) * force / end
-        labels.append(Label(place, f"straight lost\n{force:#.4g}", style.INK))
+        labels.append(Label(place, f"straight lost\n{force:#.4g}", STRAIGHT[0]))
     return labels
 
 
@@ -173,7 +174,7 @@ def _draw_panel(
     deepest = -_HEADROOM * float(finite.min(initial=0.0))
     below = min(max(deepest / greatest, _LEAST_BELOW), _MOST_BELOW)
     right = axes.twinx()
-    look: Any = {"color": style.INK, "lw": 1.3, "dash_capstyle": "butt", "ls": (0, (7.0, 2.5))}
+    look: Any = {"color": STRAIGHT[0], "lw": 1.3, "dash_capstyle": "butt", "ls": (0, (7.0, 2.5))}
     right.plot(forces, rates, gid="straight, growth rate", **look)
     right.set_ylim(-below * greatest, greatest)
     right.set_ylabel(style.growth_rate_label(paper_time=False))
@@ -181,7 +182,7 @@ def _draw_panel(
     right.yaxis.set_major_locator(MaxNLocator(6))
     axes.set_zorder(right.get_zorder() + 1)
     axes.patch.set_visible(False)
-    axes.plot(forces, turns, color=style.INK, lw=1.6, gid="straight, frequency")
+    axes.plot(forces, turns, color=STRAIGHT[0], lw=1.6, gid="straight, frequency")
     for branch in pair:
         draw_branch(axes, branch, branch.line.frequencies)
     for force, height, verdict in dots:
@@ -191,7 +192,7 @@ def _draw_panel(
     draw_forces(axes, pair)
     loss = _loss(rows)
     if loss is not None:
-        how = {"color": style.INK, "lw": 0.8, "alpha": 0.6, "zorder": 1}
+        how = {"color": STRAIGHT[0], "lw": 0.8, "alpha": 0.6, "zorder": 1}
         axes.axvline(loss, gid="straight, loss", **how)
     quiet_line(axes)
     axes.set_xlim(0.0, end)
@@ -208,8 +209,8 @@ def _box(axes: Axes, width: float, height: float) -> None:
 def _handles(pair: Pair, dots: Sequence[tuple[float, float, str]]) -> list[Line2D]:
     dashed: Any = {"ls": (0, (7.0, 2.5)), "lw": 1.3, "label": "straight: growth rate (right axis)"}
     handles = [
-        Line2D([], [], color=style.INK, lw=1.6, label="straight: frequency"),
-        Line2D([], [], color=style.INK, **dashed),
+        Line2D([], [], color=STRAIGHT[0], lw=1.6, label="straight: frequency"),
+        Line2D([], [], color=STRAIGHT[0], **dashed),
         *branch_handles(pair),
     ]
     for verdict in ordered(verdict for _, _, verdict in dots):

@@ -1,4 +1,4 @@
-"""Claims with what they came to: the rows of the table, in plain JSON types and for people."""
+"""Table of claims with their outcomes, in plain JSON types and for people."""
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from undula.reproduction.claims.catalogue import Claim, Item
-from undula.reproduction.claims.evaluate import Answer, Outcome, judge
+from undula.reproduction.claims.evaluate import Answers, Outcome, judge
 from undula.reproduction.claims.stated_values import other_values, values_of
-from undula.reproduction.tasks.task import Job
+from undula.reproduction.tasks.task import ReproductionTask, Tasks
 
-#: What stands for a verdict where a claim could not be checked, and where it was not computed.
+#: Verdicts of claims that could not be checked, and of claims that were not computed.
 UNCHECKED, NOT_JUDGED = "not checked", "not judged here"
 
 
@@ -18,84 +18,88 @@ def row_of(
     name: str,
     item: Item,
     claim: Claim,
-    answers: Mapping[str, Answer],
-    jobs: Mapping[str, Job],
+    answers: Answers,
+    tasks: Tasks,
     *,
     quick: bool,
     wanted: bool,
 ) -> dict[str, Any] | None:
-    """Return the row of a claim; None if what it needs has not been computed nor asked for.
+    """Return the row of a claim; None for a claim that was neither computed nor wanted.
 
     Parameters
     ----------
     name, item
-        The item that it belongs to.
+        The item of the claim.
     claim
-        The statement.
+        The claim.
     answers
-        Those of the item that are there.
-    jobs
-        All jobs, for the commands behind the value.
+        Stored answers of the item's tasks.
+    tasks
+        All tasks, for the commands of the row.
     quick
-        Whether the report is the quick one.
+        True for the quick report.
     wanted
-        Whether the item has been asked for: then a claim that cannot be judged is told as well.
+        True if the user has selected the item; its row then exists even without a verdict.
     """
     places = {local: f"{name}/{local}" for local in item.tasks} | item.uses
-    asked = [local for local in places if local in claim.asks]
-    why = _why_not(claim, {local: jobs.get(places[local]) for local in asked}, answers, quick=quick)
-    if why:
-        return (
-            _row(name, item, claim, Outcome(None, None, None, why), NOT_JUDGED) if wanted else None
-        )
+    used = [local for local in places if local in claim.asks]
+    own_tasks = {local: tasks.get(places[local]) for local in used}
+    reason = _why_not(claim, own_tasks, answers, quick=quick)
+    if reason:
+        outcome = Outcome(None, None, None, reason)
+        return _row(name, item, claim, outcome, NOT_JUDGED) if wanted else None
     outcome = judge(claim, answers)
     row = _row(name, item, claim, outcome, outcome.verdict or UNCHECKED)
     return row | {
         "as_expected": outcome.verdict == claim.expected,
         "command": f"undula reproduce {name}{' --quick' if quick else ''}",
-        "steps": [jobs[places[local]].told for local in asked],
+        "steps": [tasks[places[local]].typed for local in used],
     }
 
 
-def left_out(asked: Iterable[str], known: Collection[str], *, quick: bool) -> str:
-    """Return why something is not there that needs tasks; empty if all of them are done.
+def left_out(needed: Iterable[str], answered: Collection[str], *, quick: bool) -> str:
+    """Return the reason for leaving out a claim or figure; empty if all its tasks are done.
 
     Parameters
     ----------
-    asked
-        Names of the tasks.
-    known
-        Names of those whose answers are there.
+    needed
+        Names of its tasks.
+    answered
+        Names of the tasks with an answer.
     quick
-        Whether the report is the quick one.
+        True for the quick report.
     """
-    lacking = [name for name in asked if name not in known]
+    lacking = [name for name in needed if name not in answered]
     if not lacking:
         return ""
-    does = "is not" if len(lacking) == 1 else "are not"
+    verb = "is not" if len(lacking) == 1 else "are not"
     report = "in the quick report" if quick else "yet"
-    return f"{', '.join(lacking)} {does} computed {report}"
+    return f"{', '.join(lacking)} {verb} computed {report}"
 
 
 def _why_not(
-    claim: Claim, jobs: Mapping[str, Job | None], answers: Mapping[str, Answer], *, quick: bool
+    claim: Claim,
+    tasks: Mapping[str, ReproductionTask | None],
+    answers: Answers,
+    *,
+    quick: bool,
 ) -> str:
-    """Return why a claim is not to be judged from these jobs; empty if it is."""
+    """Return the reason for not judging a claim from these tasks; empty if it is judged."""
     if quick and claim.only_full:
         return "the coarser grid of the quick report does not show it"
-    missing = left_out(jobs, answers, quick=quick)
+    missing = left_out(tasks, answers, quick=quick)
     if missing:
         return missing
     computed = {
-        local: values_of(job.command)
-        for local, job in jobs.items()
-        if job is not None and claim.at and local in claim.judged_by
+        local: values_of(task.command)
+        for local, task in tasks.items()
+        if task is not None and claim.at and local in claim.judged_by
     }
     return other_values(claim.at, computed)
 
 
 def _row(name: str, item: Item, claim: Claim, outcome: Outcome, verdict: str) -> dict[str, Any]:
-    """Return the row of a claim as far as it does not depend on how it was computed."""
+    """Return the part of a row that does not depend on the computation."""
     return {
         "item": name,
         "title": item.title,
@@ -124,19 +128,27 @@ def _row(name: str, item: Item, claim: Claim, outcome: Outcome, verdict: str) ->
 
 
 def tally(rows: Sequence[Mapping[str, Any]]) -> dict[str, int]:
-    """Return how often each verdict occurs."""
+    """Return the number of rows by verdict."""
     return dict(Counter(row["verdict"] for row in rows))
 
 
 def rows_text(rows: Sequence[Mapping[str, Any]], page: Path) -> str:
-    """Return the rows for a terminal."""
+    """Return the rows for a terminal.
+
+    Parameters
+    ----------
+    rows
+        Rows of `row_of`.
+    page
+        File of the report.
+    """
     lines = []
     for row in rows:
         mark = "" if row["as_expected"] is not False else f"  << known to be {row['expected']}"
         lines.append(f"{row['item']}/{row['claim']}: {row['verdict']}{mark}")
         unit = f" {row['unit']}" if row["unit"] else ""
-        ours = number_text(row["value"], row["error"])
-        here = "" if row["verdict"] == NOT_JUDGED else f", here {ours}{unit}"
+        value = number_text(row["value"], row["error"])
+        here = "" if row["verdict"] == NOT_JUDGED else f", here {value}{unit}"
         lines.append(f"    paper {number_text(row['published'])}{unit}{here}")
         if row["reason"]:
             cure = f"; {row['command']}" if row["verdict"] == NOT_JUDGED else ""
@@ -146,7 +158,15 @@ def rows_text(rows: Sequence[Mapping[str, Any]], page: Path) -> str:
 
 
 def number_text(value: Any, error: Any = None) -> str:
-    """Write a value with as many digits as its error leaves, lists as ranges."""
+    """Return a value with the digits that its error leaves, and a pair as a range.
+
+    Parameters
+    ----------
+    value
+        A number, a word, a truth value or a list of numbers.
+    error
+        Error of the numbers, None if unknown.
+    """
     if isinstance(value, list | tuple):
         errors = error if isinstance(error, list | tuple) else [error] * len(value)
         return (

@@ -1,4 +1,4 @@
-"""Pages for the mouse inside of the report: packed, and the library that all share only once."""
+"""Interactive pages inside the report: compressed, with their common library only once."""
 
 import base64
 import gzip
@@ -10,17 +10,24 @@ from undula.errors import InputError
 from undula.reproduction.claims.catalogue import Item
 from undula.views.sweep.page import plotting_library
 
-#: Stands in a page for the library, until it is opened.
+#: Placeholder of the library in a page until the page is opened.
 _MARK = "/*the plotting library*/"
 
 
 def packed_pages(item: Item, answers: Mapping[str, Any]) -> dict[str, str]:
-    """Return the pages of an item's figures by the figures' names, packed without their library.
+    """Return the pages of an item by name of the figure, compressed without their library.
+
+    Parameters
+    ----------
+    item
+        The item.
+    answers
+        Stored answers of its tasks.
 
     Raises
     ------
     InputError
-        The file of a page is gone.
+        The file of a page is missing.
     """
     pages = {}
     for figure in item.figures:
@@ -37,10 +44,10 @@ def packed_pages(item: Item, answers: Mapping[str, Any]) -> dict[str, str]:
 
 
 def packed_library() -> str:
-    """Return the library of all pages, packed."""
+    """Return the library of all pages, compressed."""
     return _packed(plotting_library())
 
 
 def _packed(text: str) -> str:
-    """Return a text compressed, the same at any time, in letters."""
+    """Return a text compressed, in letters and independent of the time."""
     return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode("ascii")

@@ -1,1 +1,1 @@
-"""The commands that the statements rest on, as tasks."""
+"""Tasks of a reproduction: the commands whose answers the claims are checked against."""

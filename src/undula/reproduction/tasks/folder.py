@@ -1,4 +1,4 @@
-"""The folder of a report: known by a mark, for one process alone, and nothing of others in it."""
+"""Folder of a report: recognised by a mark, locked by one process, without foreign files."""
 
 import os
 import shutil
@@ -7,33 +7,34 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from undula.errors import InputError
-from undula.storage.atomic import folder_trouble_told, write_whole
+from undula.storage.atomic import folder_errors_explained, write_whole
 from undula.storage.marks import carries_mark
 from undula.storage.outputs import claimed
 
+#: Names of the page of a report and of its claims.
 PAGE, CLAIMS = "index.html", "claims.json"
-#: The file that makes a folder one of ours.
+#: File that marks the folder of a report.
 MARK = ".undula-report"
 _TEXT = b"This folder is a report of undula reproduce, which replaces what it made in it.\n"
-#: Files in the folder of a task besides those that its command makes.
+#: Files in the folder of a task that its command does not write.
 KEY, ANSWER = "key", "answer.json"
-#: Files of a store that tell what it holds.
-_OF_STORES = (".zattrs", ".zmetadata")
-#: What a process that was killed leaves of a file it was about to write, or of a lock.
+#: Files of a store that contain its format.
+_STORE_FILES = (".zattrs", ".zmetadata")
+#: Endings of unfinished files and locks of a killed process.
 _LEFTOVERS = (".part", ".part.mp4", ".lock")
 
 
 @contextmanager
-def report_claimed(folder: Path) -> Iterator[None]:
-    """Have the folder of a report for this process alone; it is made if there is none.
+def locked_report(folder: Path) -> Iterator[None]:
+    """Lock the folder of a report, which is made if it does not exist.
 
     Raises
     ------
     InputError
-        It is no folder, holds something else than a report of ours, belongs to another process
-        now, or cannot be written.
+        The folder is a file, holds something else than a report, is locked by another process, or
+        cannot be written.
     """
-    with folder_trouble_told(folder / PAGE):
+    with folder_errors_explained(folder / PAGE):
         _refuse_other(folder)
         folder.mkdir(parents=True, exist_ok=True)
     files = [folder / PAGE, folder / CLAIMS]
@@ -45,31 +46,31 @@ def report_claimed(folder: Path) -> Iterator[None]:
 
 
 def refuse_foreign(task: Path) -> None:
-    """Refuse the folder of a task in which there is something that undula has not made.
+    """Refuse the folder of a task that holds a file that undula has not made.
 
     Raises
     ------
     InputError
-        There is, or it is no folder.
+        It holds such a file, or is not a folder.
     """
-    with folder_trouble_told(task):
+    with folder_errors_explained(task):
         if task.is_symlink() or (task.exists() and not task.is_dir()):
             raise InputError(f"{task} is no folder of undula; move it away")
         for path in sorted(task.iterdir()) if task.exists() else ():
-            if not _is_ours(path):
+            if not _is_own(path):
                 raise InputError(f"{path} was not made by undula; move it out of the report")
 
 
 def clear(task: Path) -> None:
-    """Remove the folder of a task with what undula has made in it.
+    """Remove the folder of a task with the files that undula has made.
 
     Raises
     ------
     InputError
-        There is something else in it, or it cannot be written.
+        It holds other files, or cannot be written.
     """
     refuse_foreign(task)
-    with folder_trouble_told(task):
+    with folder_errors_explained(task):
         if task.exists():
             shutil.rmtree(task)
 
@@ -88,19 +89,19 @@ def _refuse_other(folder: Path) -> None:
         )
 
 
-def _is_ours(path: Path) -> bool:
+def _is_own(path: Path) -> bool:
     if path.name.startswith(".") and path.name.endswith(_LEFTOVERS):
         return True
     if path.is_symlink():
         return False
     if path.is_dir():
-        return _is_study(path)
+        return _is_sweep(path)
     return path.name in (KEY, ANSWER) or carries_mark(path)
 
 
-def _is_study(folder: Path) -> bool:
-    """Tell whether a folder is the store of a study, also one that is damaged."""
-    for name in _OF_STORES:
+def _is_sweep(folder: Path) -> bool:
+    """Return True if a folder is the store of a sweep, even a damaged one."""
+    for name in _STORE_FILES:
         with suppress(OSError):
             if b"undula_format" in (folder / name).read_bytes():
                 return True

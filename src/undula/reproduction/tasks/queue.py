@@ -1,98 +1,111 @@
-"""What is left to do of the catalogue: tasks handed out in order, and what has come back."""
+"""Work queue of a reproduction: missing tasks in order, and outcomes taken back."""
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from undula.reproduction.tasks.task import Job
+from undula.reproduction.tasks.task import ReproductionTask
 from undula.sweeps.workers import DiedError
 from undula.terminal.output import DONE, notice
 
-#: Keys of an input that choose other compiled code.
+#: Keys of an input that select compiled code.
 _CODE = ("model.kind", "model.confined", "model.twist", "model.inextensibility", "model.spring")
 #: Commands that share the kernels of states.
 _SOLVING = ("find", "follow", "threshold")
 
 
-class TaskWork:
-    """Jobs that wait for others, or for a worker; the longest go first.
+class ReproductionWork:
+    """Tasks that wait for other tasks or for a worker; the longest ones are handed out first.
 
-    The first job of a kind may have to compile its kernels. While it does, others of its kind stand
-    back, so that two workers do not compile the same.
+    The first task of a kind may have to compile its kernels. Meanwhile other tasks of this kind are
+    postponed, so that two workers do not compile the same kernels.
 
     Parameters
     ----------
-    jobs
-        All that is to be done. What they need and is not among them is there already.
+    tasks
+        The missing tasks. Tasks that they need and that are not among them are done.
+
+    Attributes
+    ----------
+    total
+        Number of tasks.
     """
 
-    def __init__(self, jobs: Sequence[Job]) -> None:
-        self._waiting = sorted(jobs, key=lambda job: -job.task.cost)
-        self._undone = {job.folder: job for job in jobs}
-        self._lost: set[Path] = set()
-        self._first: set[frozenset[str]] = set()
+    def __init__(self, tasks: Sequence[ReproductionTask]) -> None:
+        self._waiting = sorted(tasks, key=lambda task: -task.entry.cost)
+        self._missing = {task.folder: task for task in tasks}
+        self._failed: set[Path] = set()
+        self._compiling: set[frozenset[str]] = set()
         self._compiled: set[frozenset[str]] = set()
-        self.total = len(jobs)
+        self.total = len(tasks)
 
     @property
     def left(self) -> int:
-        """Number of jobs that have not come back."""
-        return len(self._undone)
+        """Number of tasks without an outcome."""
+        return len(self._missing)
 
     @property
     def failed(self) -> int:
-        """Number of jobs that have failed, or could not begin."""
-        return len(self._lost)
+        """Number of tasks that have failed, or need one that has failed."""
+        return len(self._failed)
 
-    def take(self, *, all_cores: bool) -> Job | None:
-        """Return a job to be done now, in a folder that is ready for it; None if there is none.
+    def take(self, *, all_cores: bool) -> ReproductionTask | None:
+        """Return a task to be computed, with its folder prepared; None if no task is ready.
 
         Parameters
         ----------
         all_cores
-            Whether to choose among those that use all processors, or among the others.
+            If true, choose among the tasks that use all processors; else among the others.
         """
-        self._give_up_what_waits_for_lost()
-        free = [
-            job
-            for job in self._waiting
-            if job.task.all_cores == all_cores and not job.needs & self._undone.keys()
+        self._fail_dependent_tasks()
+        ready = [
+            task
+            for task in self._waiting
+            if task.entry.all_cores == all_cores and not task.needs & self._missing.keys()
         ]
-        if not free:
+        if not ready:
             return None
-        job = next((one for one in free if _kind(one) not in self._first), free[0])
-        self._waiting.remove(job)
-        if _kind(job) not in self._compiled:
-            self._first.add(_kind(job))
-        job.prepare()
-        return job
+        task = next((task for task in ready if _kernels(task) not in self._compiling), ready[0])
+        self._waiting.remove(task)
+        if _kernels(task) not in self._compiled:
+            self._compiling.add(_kernels(task))
+        task.prepare()
+        return task
 
-    def take_back(self, job: Job, outcome: dict[str, Any] | DiedError) -> None:
-        """Keep what a job came to, or tell why it failed."""
-        del self._undone[job.folder]
-        self._first.discard(_kind(job))
-        self._compiled.add(_kind(job))
+    def take_back(self, task: ReproductionTask, outcome: dict[str, Any] | DiedError) -> None:
+        """Store the outcome of a task, or give notice of its failure.
+
+        Parameters
+        ----------
+        task
+            A task that `take` has returned.
+        outcome
+            Its outcome, as `run_captured` returns it, or the death of all workers.
+        """
+        del self._missing[task.folder]
+        self._compiling.discard(_kernels(task))
+        self._compiled.add(_kernels(task))
         if isinstance(outcome, DiedError):
-            self._lose(job, f"died with every worker that tried it ({outcome})")
+            self._fail(task, f"died with every worker that tried it ({outcome})")
         elif outcome["status"] != DONE:
-            self._lose(job, f"ended with status {outcome['status']}: {outcome['said']}")
+            self._fail(task, f"ended with status {outcome['status']}: {outcome['said']}")
         else:
-            job.keep(outcome)
+            task.store(outcome)
 
-    def _give_up_what_waits_for_lost(self) -> None:
-        for job in [one for one in self._waiting if one.needs & self._lost]:
-            self._waiting.remove(job)
-            del self._undone[job.folder]
-            self._lose(job, "needs one that has failed")
+    def _fail_dependent_tasks(self) -> None:
+        for task in [task for task in self._waiting if task.needs & self._failed]:
+            self._waiting.remove(task)
+            del self._missing[task.folder]
+            self._fail(task, "needs one that has failed")
 
-    def _lose(self, job: Job, why: str) -> None:
-        self._lost.add(job.folder)
-        notice(f"{job.told} {why}")
+    def _fail(self, task: ReproductionTask, cause: str) -> None:
+        self._failed.add(task.folder)
+        notice(f"{task.typed} {cause}")
 
 
-def _kind(job: Job) -> frozenset[str]:
-    """Return what of a command tells which kernels it needs, as far as that matters."""
-    verb = "solve" if job.command[0] in _SOLVING else job.command[0]
-    chosen = (word for word in job.command if word.startswith(_CODE))
-    flaps = {"flapping"} if any(word.startswith("flapping") for word in job.command) else set()
-    return frozenset((verb, *chosen, *flaps, *{"--lyapunov"} & {*job.command}))
+def _kernels(task: ReproductionTask) -> frozenset[str]:
+    """Return the words of a command that determine the kernels that it needs."""
+    verb = "solve" if task.command[0] in _SOLVING else task.command[0]
+    keys = (word for word in task.command if word.startswith(_CODE))
+    flaps = {"flapping"} if any(word.startswith("flapping") for word in task.command) else set()
+    return frozenset((verb, *keys, *flaps, *{"--lyapunov"} & {*task.command}))

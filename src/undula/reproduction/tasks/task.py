@@ -1,4 +1,4 @@
-"""Tasks of the catalogue: what is left to do, done by workers, and kept for the next time."""
+"""Tasks of a reproduction: commands with their folders, and their stored answers."""
 
 import contextlib
 import hashlib
@@ -15,8 +15,8 @@ from typing import Any
 
 from undula.errors import InputError
 from undula.jit.cache import PACKAGE
-from undula.reproduction.claims.catalogue import Item, Task
-from undula.reproduction.claims.evaluate import Answer
+from undula.reproduction.claims.catalogue import Item, TaskEntry
+from undula.reproduction.claims.evaluate import ClaimAnswer
 from undula.reproduction.tasks.folder import ANSWER, KEY, clear, refuse_foreign
 from undula.schema.sweep_axes import NOT_DONE
 from undula.storage.atomic import write_whole
@@ -25,44 +25,39 @@ from undula.storage.seal import is_whole
 from undula.sweeps.store import load_sweep
 from undula.terminal.output import DONE
 
-#: Sources that read answers and compute none: their changes leave all that is kept as it is.
-_JUDGING = (
-    "reproduction/claims/evaluate",
-    "reproduction/claims/measures",
-    "reproduction/claims/errata",
-    "reproduction/claims/stated",
-    "reproduction/claims/sweep_measures",
-    "reproduction/figures/by_name",
-    "reproduction/report",
-    "reproduction/reproduce",
-)
-#: What commands store in the folder of a task that carries checksums.
-_FILES, _STUDY = ("run.nc", "steps.nc"), "study.zarr"
+#: Folder of the sources that hand out commands and judge their answers. A change there leaves all
+#: stored answers valid; a change of any other source makes them outdated. The latter includes the
+#: views, since commands also draw figures.
+_JUDGING = "reproduction/"
+#: Results with checksums that commands store in the folder of a task.
+_FILES, _SWEEP = ("run.nc", "steps.nc"), "study.zarr"
 
 
 @dataclass(frozen=True)
-class Job:
-    """A task with its place on disk.
+class ReproductionTask:
+    """A task of the catalogue with its folder.
 
     Attributes
     ----------
-    item, name, task
-        Of the catalogue.
+    item, name
+        Names of the item and of the task in it.
+    entry
+        The task in the catalogue.
     command
-        Its words behind `undula`, with folders filled in.
+        Words of the command after `undula`, with folders filled in.
     folder
-        Where its files and its answer are.
+        Folder of its files and of its answer.
     key
-        What its answer depends on: the command, its input files, and the sources of undula.
+        Digest of all that the answer depends on: the command, its input files and the sources.
     needs
-        Folders of the jobs that have to come before.
+        Folders of the tasks that have to be done before.
     as_in_full
-        Whether the full report has the same.
+        True if the full report contains the same task.
     """
 
     item: str
     name: str
-    task: Task
+    entry: TaskEntry
     command: tuple[str, ...]
     folder: Path
     key: str
@@ -70,12 +65,12 @@ class Job:
     as_in_full: bool
 
     @property
-    def told(self) -> str:
-        """The command as it is typed."""
+    def typed(self) -> str:
+        """The command as typed in a shell."""
         return shlex.join(("undula", *self.command))
 
-    def kept(self) -> dict[str, Any] | None:
-        """Return the record of an earlier call, if it is one of this very job and undamaged."""
+    def stored(self) -> dict[str, Any] | None:
+        """Return the stored outcome, None if it is missing, damaged or outdated."""
         try:
             record = unsealed_json((self.folder / ANSWER).read_bytes())
         except OSError:
@@ -83,114 +78,124 @@ class Job:
         return record if record is not None and record["key"] == self.key else None
 
     def is_done(self) -> bool:
-        """Tell whether its record is kept, and all is undamaged that its command has stored."""
-        study = self.folder / _STUDY
-        if self.kept() is None or any(True for _ in _damaged_files(self.folder)):
+        """Return True if the outcome is stored and all stored results are undamaged."""
+        sweep = self.folder / _SWEEP
+        if self.stored() is None or any(True for _ in _damaged_files(self.folder)):
             return False
         try:
-            if not study.is_dir():
+            if not sweep.is_dir():
                 return True
-            return bool((load_sweep(study, shapes=False)["status"] != NOT_DONE).all())
+            return bool((load_sweep(sweep, shapes=False)["status"] != NOT_DONE).all())
         except InputError:
             return False
 
-    def keep(self, record: Mapping[str, Any]) -> None:
-        """Store the record of its answer.
+    def store(self, outcome: Mapping[str, Any]) -> None:
+        """Store the outcome that `run_captured` has returned.
 
         Raises
         ------
         InputError
             The folder cannot be written or is full.
         """
-        content = sealed_json({"key": self.key, **record})
+        content = sealed_json({"key": self.key, **outcome})
         write_whole(self.folder / ANSWER, content, overwrite=True)
 
     def prepare(self) -> None:
-        """Make its folder, without the files of another version of the same task.
+        """Make the folder, without files of another version of the same task.
 
         Raises
         ------
         InputError
-            There is something in it that undula has not made, or it cannot be written.
+            The folder holds a file that undula has not made, or cannot be written.
         """
         refuse_foreign(self.folder)
         mark = self.folder / KEY
         if _text(mark) != self.key:
             clear(self.folder)
         for damaged in _damaged_files(self.folder):
-            # A series would go on with it; a study mends what is damaged of it.
+            # The command would continue a damaged ramp; a sweep repairs its store itself.
             damaged.unlink()
         write_whole(mark, self.key.encode(), overwrite=True)
 
 
+#: Tasks by `item/task`.
+Tasks = Mapping[str, ReproductionTask]
+
+
 def _damaged_files(folder: Path) -> Iterator[Path]:
-    """Yield the result files in the folder of a task that are not as they were written."""
+    """Yield the damaged result files in the folder of a task."""
     for file in (folder / name for name in _FILES):
         if file.is_file() and not is_whole(file.read_bytes()):
             yield file
 
 
-def jobs_of(items: Mapping[str, Item], inputs: Path, data: Path, *, quick: bool) -> dict[str, Job]:
-    """Return the jobs of items by `item/task`, without those that a quick report leaves out.
+def tasks_of(
+    items: Mapping[str, Item], inputs: Path, data: Path, *, quick: bool
+) -> dict[str, ReproductionTask]:
+    """Return the tasks of a report by `item/task`.
 
     Parameters
     ----------
     items
-        By name.
+        Items of the catalogue by name.
     inputs
         Folder of the input files of their commands.
     data
-        Folder of all that the commands write.
+        Folder of all files that the commands write.
     quick
-        Whether the report is the quick one.
+        True for the quick report, which leaves out some tasks.
     """
     return {
-        f"{name}/{job.name}": job
+        f"{name}/{task.name}": task
         for name, item in items.items()
-        for job in _jobs(name, item, inputs, data / name, quick=quick).values()
+        for task in _tasks_of_item(name, item, inputs, data / name, quick=quick).values()
     }
 
 
-def _jobs(item_name: str, item: Item, inputs: Path, data: Path, *, quick: bool) -> dict[str, Job]:
-    """Return the jobs of an item by the names of their tasks."""
-    made: dict[str, Job] = {}
+def _tasks_of_item(
+    item_name: str, item: Item, inputs: Path, data: Path, *, quick: bool
+) -> dict[str, ReproductionTask]:
+    """Return the tasks of an item by name."""
+    made: dict[str, ReproductionTask] = {}
 
-    def job_of(name: str) -> Job:
+    def task_of(name: str) -> ReproductionTask:
         if name not in made:
-            task = item.tasks[name]
-            needed = {other: job_of(other) for other in task.needs(quick=quick)}
-            made[name] = _job(item_name, name, task, needed, inputs, data, quick=quick)
+            entry = item.tasks[name]
+            needed = {other: task_of(other) for other in entry.needs(quick=quick)}
+            made[name] = _task(item_name, name, entry, needed, inputs, data, quick=quick)
         return made[name]
 
-    for name, task in item.tasks.items():
-        if task.command(quick=quick) is not None:
-            job_of(name)
+    for name, entry in item.tasks.items():
+        if entry.command(quick=quick) is not None:
+            task_of(name)
     return made
 
 
-def _job(
+def _task(
     item: str,
     name: str,
-    task: Task,
-    needed: Mapping[str, Job],
+    entry: TaskEntry,
+    needed: Mapping[str, ReproductionTask],
     inputs: Path,
     data: Path,
     *,
     quick: bool,
-) -> Job:
-    template = task.command(quick=quick) or ""
-    as_in_full = template == task.call and all(job.as_in_full for job in needed.values())
+) -> ReproductionTask:
+    template = entry.command(quick=quick) or ""
+    as_in_full = template == entry.call and all(task.as_in_full for task in needed.values())
     folder = data / (name if as_in_full else f"{name}-quick")
-    places = {other: str(job.folder) for other, job in needed.items()}
+    places = {other: str(task.folder) for other, task in needed.items()}
     places |= {"out": str(folder), "inputs": _shown(inputs)}
     command = tuple(_filled(word, places) for word in shlex.split(template))
     read = [path for path in map(Path, command) if path.parent == Path(places["inputs"])]
-    digest = hashlib.sha256(_computing().encode())
+    digest = hashlib.sha256(_source_digest().encode())
     parts = [template, *map(_input_text, read)]
-    for part in (*parts, *(job.key for job in needed.values())):
+    for part in (*parts, *(task.key for task in needed.values())):
         digest.update(b"\0" + part.encode())
-    before = frozenset(job.folder for job in needed.values())
-    return Job(item, name, task, command, folder, digest.hexdigest(), before, as_in_full)
+    before = frozenset(task.folder for task in needed.values())
+    return ReproductionTask(
+        item, name, entry, command, folder, digest.hexdigest(), before, as_in_full
+    )
 
 
 def _input_text(path: Path) -> str:
@@ -201,7 +206,7 @@ def _input_text(path: Path) -> str:
 
 
 def _text(path: Path) -> str | None:
-    """Return the text of a file, None if there is none."""
+    """Return the text of a file, None if it cannot be read."""
     try:
         return path.read_text("utf-8")
     except (OSError, UnicodeDecodeError):
@@ -209,8 +214,8 @@ def _text(path: Path) -> str | None:
 
 
 @cache
-def _computing() -> str:
-    """Return a digest of all sources but those that only judge and show what commands answer."""
+def _source_digest() -> str:
+    """Return a digest of all sources except those that only judge the answers of commands."""
     digest = hashlib.sha256()
     for path in sorted(PACKAGE.rglob("*.py")):
         name = path.relative_to(PACKAGE).as_posix()
@@ -220,51 +225,52 @@ def _computing() -> str:
 
 
 def _filled(word: str, places: Mapping[str, str]) -> str:
+    """Return a word of a command with paths in place of names in braces."""
     for name, place in places.items():
         word = word.replace(f"{{{name}}}", place)
     return word
 
 
 def _shown(path: Path) -> str:
-    """Return a path from the working folder, if it is below, so that commands can be typed."""
+    """Return a path relative to the working folder, if it is below, for short commands."""
     try:
         return str(path.relative_to(Path.cwd()))
     except ValueError:
         return str(path)
 
 
-def answers_of(item: Item, name: str, jobs: Mapping[str, Job]) -> dict[str, Answer]:
-    """Return the answers that are kept of the tasks of an item, by the names that it uses."""
+def answers_of(item: Item, name: str, tasks: Tasks) -> dict[str, ClaimAnswer]:
+    """Return the stored answers of the tasks of an item, by the names that it uses for them."""
     places = {local: f"{name}/{local}" for local in item.tasks} | item.uses
     answers = {}
     for local, place in places.items():
-        job = jobs.get(place)
-        record = job.kept() if job else None
-        if job is not None and record is not None and record["status"] == DONE:
-            answers[local] = Answer(record["answer"], job.folder)
+        task = tasks.get(place)
+        record = task.stored() if task else None
+        if task is not None and record is not None and record["status"] == DONE:
+            answers[local] = ClaimAnswer(record["answer"], task.folder)
     return answers
 
 
-def carry_out(
+def run_captured(
     run_command: str, command: tuple[str, ...], *, quietly: bool = True
 ) -> dict[str, Any]:
-    """Run a command of `undula` in this process.
+    """Run a command of `undula` in this process and capture its answer.
 
     Parameters
     ----------
     run_command
         Import path, as ``package.module:function``, of the function that runs a command from its
-        words and returns the exit status. A path instead of the function can be sent to workers.
+        words and returns the exit status. Unlike the function, the path can be sent to workers.
     command
-        Its words, without `undula`.
+        Words of the command, without `undula`.
     quietly
-        Whether its progress is kept from standard error.
+        If true, progress is not written to standard error.
 
     Returns
     -------
     dict
-        `status`, the exit status; `answer`, its JSON; `said`, the last line on standard error;
-        `seconds`.
+        `status`, the exit status; `answer`, the JSON answer; `said`, the last line on standard
+        error; `seconds` of wall time.
     """
     began = time.monotonic()
     answered, said = io.StringIO(), io.StringIO()

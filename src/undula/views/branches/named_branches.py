@@ -14,20 +14,17 @@ from undula.analysis.states.periodic_record import Periodic
 from undula.analysis.states.records import Flapping, Spinning
 from undula.arrays import Array
 from undula.views.branches.branch_lines import BranchLine, branch_line
-from undula.views.common import style
+from undula.views.common.verdict_styles import look_of
 
-_COLOURS = (
-    style.X_COLOUR,
-    style.Y_COLOUR,
-    style.Z_COLOUR,
-    style.ENERGY_COLOUR,
-    style.ACTIVE_COLOUR,
-)
 _NAMES: Mapping[type[Any], str] = {
     Spinning: "spinning",
     Flapping: "planar flapping",
     Periodic: "modulated",
 }
+#: Colours of further branches of a name, from P. Tol's muted palette; no verdict has them.
+_FURTHER = ("#44AA99", "#CC6677", "#DDCC77", "#117733", "#AA4499")
+#: Verdicts that correspond to the names.
+_VERDICTS = {"modulated": "modulated spinning"}
 #: Line styles of stable and unstable parts.
 DASHES: Any = {True: "-", False: (0, (2.6, 1.6))}
 #: Width of both [points].
@@ -67,8 +64,17 @@ def named_branches(branches: Sequence[Branch[Any]]) -> list[NamedBranch]:
     return [
         NamedBranch(f"{name} {number}" if several[name] > 1 else name, colour, branch, line)
         for name, number, colour, branch, line in zip(
-            names, numbers, cycle(_COLOURS), branches, map(branch_line, branches), strict=False
+            names, numbers, _colours(names), branches, map(branch_line, branches), strict=True
         )
+    ]
+
+
+def _colours(names: Sequence[str]) -> list[str]:
+    """Return the colours of branches: that of its verdict for the first branch of each name."""
+    further = cycle(_FURTHER)
+    return [
+        next(further) if name in names[:place] else look_of(_VERDICTS.get(name, name)).colour
+        for place, name in enumerate(names)
     ]
 
 

@@ -1,4 +1,4 @@
-"""The content of a figure's file: with our mark, and without a trace of when it was made."""
+"""Bytes of figure files, with the mark of undula and independent of the time."""
 
 from collections.abc import Mapping
 from io import BytesIO
@@ -21,12 +21,12 @@ def figure_bytes(figure: Any, ending: str) -> bytes:
     Parameters
     ----------
     figure
-        What to draw.
+        The figure.
     ending
-        Of the file: .png, .pdf or .svg.
+        Ending of the file: .png, .pdf or .svg.
     """
     image, kind = BytesIO(), ending[1:].lower()
-    # Names of parts of an SVG are taken from this word, not from chance.
+    # With a fixed salt, the names of parts in an SVG file are not random.
     with mpl.rc_context({"svg.hashsalt": _MARK}):
         figure.savefig(image, format=kind, dpi=_DOTS_PER_INCH, metadata=dict(_METADATA[kind]))
     return image.getvalue()

@@ -1,4 +1,4 @@
-"""Labels above a panel for places on its axis, moved aside so that none covers another."""
+"""Labels above a panel for places on its axis, shifted so that they do not overlap."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -10,14 +10,14 @@ from matplotlib.text import Text
 
 from undula.arrays import Array
 
-# In parts of the figure's height: where labels end, and how far they are from the panel.
+# In fractions of the figure's height: top of the labels, and their distance from the panel.
 _TOP, _LEADER = 0.875, 0.035
-# In parts of the figure's width: between two labels, and how far they may reach beyond the panel.
+# In fractions of the figure's width: gap between labels, and their reach beyond the panel.
 _GAP, _OVERHANG = 0.018, 0.02
 
 
 class Label(NamedTuple):
-    """A text, the place in the figure's width that it belongs to, and the colour of its leader."""
+    """A label: its place in fractions of the figure's width, its text, and its leader's colour."""
 
     place: float
     text: str
@@ -27,21 +27,21 @@ class Label(NamedTuple):
 def label_above(figure: Figure, labels: Sequence[Label], left: float, right: float) -> float:
     """Write labels in a row, each with a leader from its place at the top of the panel.
 
-    They stand upright where there are too many to lie side by side.
+    Labels that do not fit side by side are rotated by 90 degrees.
 
     Parameters
     ----------
     figure : Figure
-        With room for the labels under its legend.
+        Figure with room for the labels below its legend.
     labels : sequence of Label
-        In any order.
+        The labels in any order.
     left, right : float
-        Edges of the panel in parts of the figure's width.
+        Edges of the panel in fractions of the figure's width.
 
     Returns
     -------
     float
-        Where the panel has to end, in parts of the figure's height.
+        Top of the panel in fractions of the figure's height.
     """
     if not labels:
         return _TOP
@@ -67,25 +67,25 @@ def spread(wanted: Array, widths: Array, left: float, right: float) -> Array:
     Parameters
     ----------
     wanted : ndarray of shape (m,)
-        Where the centres would best be, not decreasing.
+        Best places of the centres, not decreasing.
     widths : ndarray of shape (m,)
-        Widths of the labels; where they are more than the bounds hold, labels overlap.
+        Widths of the labels; labels overlap if they are wider than the bounds.
     left, right : float
         Bounds of all labels.
 
     Returns
     -------
     ndarray of shape (m,)
-        Centres of labels that do not cover one another.
+        Centres of labels that do not overlap.
     """
-    # The mean of two arrangements without overlap has none either, and favours no side.
+    # The mean of two arrangements without overlap is one without overlap, and favours no side.
     rightwards = _pushed(wanted, widths, left, right)
     leftwards = -_pushed(-wanted[::-1], widths[::-1], -right, -left)[::-1]
     return 0.5 * (rightwards + leftwards)
 
 
 def _pushed(wanted: Array, widths: Array, left: float, right: float) -> Array:
-    """Give way to the right, and at the right bound back again."""
+    """Shift centres to the right as far as needed, and back at the right bound."""
     centres = wanted.copy()
     edge = left
     for place, half in enumerate(0.5 * widths):
@@ -110,6 +110,6 @@ def _write(figure: Figure, text: str) -> Text:
 
 
 def _sizes(figure: Figure, texts: Sequence[Text]) -> Array:
-    """Return widths, with a gap, and heights, with a leader, in parts of the figure."""
+    """Return widths with a gap, and heights with a leader, in fractions of the figure."""
     extents = np.array([text.get_window_extent().size for text in texts])
     return np.asarray(extents / figure.bbox.size + [_GAP, _LEADER], dtype=np.float64)

@@ -1,8 +1,8 @@
-"""One look for every figure: colours, type sizes, and names of quantities with their units.
+"""Common style of all figures: colours, type sizes, and names of quantities with their units.
 
-The line colours are the palette of Okabe & Ito (2008), which stays apart under the common kinds
-of colour blindness and in grey print. Shapes in time run through viridis from its pale to its
-dark end, so that later always means darker.
+The line colours are the palette of Okabe & Ito (2008), which remains distinct with the common kinds
+of colour blindness and in grey print. Shapes in the course of time are coloured with viridis, from
+pale to dark.
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from undula.models.units import FILAMENT_UNITS
 
-#: Names of units by quantity, as `undula.models.units.Units.names` gives them.
+#: Names of units by quantity, as `undula.models.units.Units.names` returns them.
 UnitNames = Mapping[str, str]
 FILAMENT: UnitNames = FILAMENT_UNITS.names()
 
@@ -51,7 +51,7 @@ _PARAMETER_LABELS = {
     "model.base_spring": r"base spring $K_0$  $[K]$",
 }
 _PALE, _DARK = 0.08, 0.97
-# Points: a title, and one that is long.
+# Type sizes of a title and of the longest title [points].
 _TITLE, _SMALLEST = 11.5, 7.0
 _SETTINGS = {
     "font.family": ["DejaVu Sans"],
@@ -87,20 +87,20 @@ _SETTINGS = {
 
 
 def figure_style() -> AbstractContextManager[None]:
-    """Give the look of all figures for the length of a `with` block.
+    """Set the style of all figures within a context.
 
     Returns
     -------
     context manager
-        Inside it matplotlib's settings are its defaults with this package's look on top;
-        outside it they are as they were, whatever the user's own settings say.
+        In the context matplotlib has its default settings with those of this package, independent
+        of the user's settings, which are restored afterwards.
     """
     settings: Any = {**_plain_defaults(), **_SETTINGS}
     return mpl.rc_context(settings)
 
 
 def shape_colours(count: int) -> NDArray[np.float64]:
-    """Give one colour per shape, from pale (earliest) to dark (latest).
+    """Return one colour per shape, from pale (earliest) to dark (latest).
 
     Parameters
     ----------
@@ -117,50 +117,58 @@ def shape_colours(count: int) -> NDArray[np.float64]:
 
 
 def force_label(units: UnitNames) -> str:
-    """Name the force with its unit."""
+    """Return the name of the force with its unit."""
     return rf"force $F$  $[{_symbols(units['force'])}]$"
 
 
 def energy_label(units: UnitNames) -> str:
-    """Name the bending energy with its unit."""
+    """Return the name of the bending energy with its unit."""
     return "bending energy\n" rf"$E$  $[{_symbols(units['energy'])}]$"
 
 
 def power_label(units: UnitNames) -> str:
-    """Name the power with its unit, which is that of the energy per T."""
+    """Return the name of the power with its unit, that of the energy per T."""
     above, _, below = _symbols(units["energy"]).partition("/")
     return "power\n" rf"$P$  $[{above}/{f'({below}T)' if below else 'T'}]$"
 
 
 def time_label(units: UnitNames) -> str:
-    """Name the time, and tell what T is."""
+    """Return the name of the time with the meaning of T."""
     return rf"time $t$  $[T={_symbols(units['time'])}]$"
 
 
 def growth_rate_label(*, paper_time: bool) -> str:
-    """Name the growth rate with its unit."""
+    """Return the name of the growth rate with its unit."""
     unit = r"\gamma/T" if paper_time else "1/T"
     return rf"growth rate $\mathrm{{Re}}\,\sigma$  $[{unit}]$"
 
 
 def frequency_label(*, paper_time: bool) -> str:
-    """Name the frequency with its unit."""
+    """Return the name of the frequency with its unit."""
     return f"frequency  [{frequency_unit(paper_time=paper_time)}]"
 
 
 def frequency_unit(*, paper_time: bool) -> str:
-    """Name the unit of frequencies."""
-    # A rate that is smaller by the factor gamma is the same rate in a time unit shorter by gamma.
+    """Return the unit of frequencies."""
+    # In a time unit shorter by the factor gamma, the same rate is smaller by this factor.
     return r"cycles per $T/\gamma$" if paper_time else RATE_UNIT
 
 
 def parameter_label(name: str) -> str:
-    """Name a parameter such as "load.slope" by its symbol and unit; an unknown one as it is."""
+    """Return symbol and unit of a parameter such as "load.slope"; other names unchanged."""
     return _PARAMETER_LABELS.get(name, name)
 
 
 def headed_figure(title: str, *, paper_time: bool) -> Figure:
-    """Start a figure of 10 by 5.5 inches with a title, and a word on an unusual time unit."""
+    """Return a figure of 10 by 5.5 inches with a title, and a note on the paper's time unit.
+
+    Parameters
+    ----------
+    title
+        Title of the figure.
+    paper_time
+        True for the time unit of the paper's printed equation.
+    """
     figure = Figure(figsize=(10.0, 5.5))
     right = 0.978
     if paper_time:
@@ -174,16 +182,16 @@ def headed_figure(title: str, *, paper_time: bool) -> Figure:
 def write_title(
     figure: Figure, title: str, place: tuple[float, float], *, right: float = 0.978
 ) -> None:
-    """Write the line above a figure, smaller if it is long, and cut short if it is very long.
+    """Write the title of a figure; a long title is smaller, and a very long one is cut off.
 
     Parameters
     ----------
     figure : Figure
     title : str
     place : tuple of float
-        Its lower left corner, in parts of the figure.
+        Lower left corner in fractions of the figure.
     right : float
-        Where it has to end, in parts of the figure's width.
+        Right end in fractions of the figure's width.
     """
     text = figure.text(*place, title, fontsize=_TITLE, gid="title")
     room = (right - place[0]) * figure.bbox.width
@@ -198,11 +206,11 @@ def _width(text: Text) -> float:
 
 
 def _symbols(unit: str) -> str:
-    """Write the name of a unit as a formula."""
+    """Return the name of a unit as a formula."""
     return unit.replace("zeta", r"\zeta").replace("_perp", r"_\perp")
 
 
 def _plain_defaults() -> dict[str, object]:
-    """Matplotlib's own defaults without the backend, which is the user's choice alone."""
+    """Return the defaults of matplotlib without the backend, which the user chooses."""
     kept = ("backend", "interactive", "toolbar", "timezone", "webagg", "savefig.directory")
     return {k: v for k, v in mpl.rcParamsDefault.items() if not k.startswith(kept)}

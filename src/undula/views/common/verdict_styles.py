@@ -1,7 +1,7 @@
-"""One colour and one symbol for each verdict, the same in every diagram.
+"""Colour and symbol of each verdict, the same in every figure.
 
-Colours are those of Okabe & Ito (2008) and of P. Tol's palettes for the colour-blind; symbols tell
-verdicts apart without them.
+The colours are those of Okabe & Ito (2008) and of P. Tol's palettes for the colour-blind; the
+symbols distinguish verdicts without colours.
 """
 
 from collections.abc import Iterable
@@ -11,14 +11,15 @@ from undula.views.common import style
 
 
 class Look(NamedTuple):
-    """How a verdict is drawn: its colour, its marker in a figure, and its symbol on a page."""
+    """Colour of a verdict, its marker in a figure, and its symbol on a page."""
 
     colour: str
     marker: str
     symbol: str
 
 
-_LOOKS = {
+#: Look of each verdict, in the order of legends.
+LOOKS = {
     "straight": Look(style.QUIET, "o", "circle-open"),
     "spinning": Look(style.X_COLOUR, "o", "circle"),
     "modulated spinning": Look("#56B4E9", "h", "hexagon"),
@@ -35,11 +36,11 @@ _OTHER = Look("#882255", "<", "triangle-left")
 
 
 def look_of(verdict: str) -> Look:
-    """Return the look of a verdict; those that are not known share one."""
-    return _LOOKS.get(verdict, _OTHER)
+    """Return the look of a verdict; unknown verdicts share one look."""
+    return LOOKS.get(verdict, _OTHER)
 
 
 def ordered(verdicts: Iterable[str]) -> list[str]:
-    """Return verdicts without repetition, in the order in which legends name them."""
-    known = list(_LOOKS)
-    return sorted(set(verdicts), key=lambda one: known.index(one) if one in known else len(known))
+    """Return verdicts without repetition in the order of legends, unknown verdicts last."""
+    order = {verdict: place for place, verdict in enumerate(LOOKS)}
+    return sorted(set(verdicts), key=lambda verdict: order.get(verdict, len(order)))

@@ -1,4 +1,4 @@
-"""Growth rate and frequency of the leading eigenvalue: curves over force, maps with a parameter.
+"""Growth rate and frequency of the leading eigenvalue over the force, and over a parameter.
 
 After the figures "Frequency of oscillations versus linear stability analysis" and "Linear stability
 analysis" of Ling, Guo & Kanso (2018).
@@ -20,22 +20,31 @@ from undula.views.linear.growth_maps import draw_maps
 def growth_figure(
     growth: GrowthCurve, *, title: str, units: style.UnitNames = style.FILAMENT
 ) -> Figure:
-    """Draw the leading eigenvalue against the force, and against a parameter if there is one.
+    """Draw the leading eigenvalue over the force, and over a parameter if the curve has one.
 
     Parameters
     ----------
     growth : GrowthCurve
-        Rates and frequencies; NaN where there are none.
+        Rates and frequencies; NaN for missing values.
     title : str
-        The line above.
+        Title of the figure.
     units : mapping of str to str
-        Names of the model's units, as `Units.names` gives them; by default a filament's.
+        Names of the model's units, by quantity; by default those of a filament.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 5.5 inches, not known to pyplot. Without a parameter two panels over the force, with
-        one two maps over parameter and force; in these the black line is the Hopf curve.
+        10 by 5.5 inches, not registered with pyplot. Without a parameter it has two panels over the
+        force; with a parameter two maps over parameter and force, with the Hopf curve in black.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import growth_figure
+    >>> model = undula.Filament(segments=8, load=undula.TipLoad(75.0))
+    >>> growth = undula.growth_curve(model, [20.0, 40.0, 60.0])
+    >>> growth_figure(growth, title="tip force").get_size_inches().tolist()
+    [10.0, 5.5]
     """
     with style.figure_style():
         figure = style.headed_figure(title, paper_time=growth.paper_time)
@@ -54,18 +63,18 @@ def draw_growth(
     right: float,
     top: float,
 ) -> tuple[Axes, Axes]:
-    """Draw rate and frequency in two panels over one force axis, the unstable forces shaded.
+    """Draw rate and frequency in two panels over one force axis, with unstable forces shaded.
 
     Parameters
     ----------
     figure : Figure
-        Where to draw them.
+        The figure.
     growth : GrowthCurve
         A curve without a parameter.
     units : mapping of str to str
         Names of the model's units.
     left, right, top : float
-        Edges of the block in parts of the figure.
+        Edges of the panels in fractions of the figure.
 
     Returns
     -------
@@ -111,39 +120,64 @@ def draw_points(
     dashes: str = "-",
     width: float = 1.6,
 ) -> None:
-    """Draw a line through values, broken at NaN; a value without neighbours becomes a dot.
+    """Draw a line through values, broken at NaN, with a dot for a value without neighbours.
 
-    The line has `name` as its group identity, and as its label in a legend.
+    `name` is the group identity of the line, and its label in a legend.
+
+    Parameters
+    ----------
+    axes
+        The axes.
+    places
+        Places on the x axis, shape (m,).
+    values
+        Values, NaN for missing ones, shape (m,).
+    colour
+        Colour of line and dots.
+    name
+        Name of the line.
+    dashes
+        Style of the line.
+    width
+        Width of the line [points].
     """
-    here = np.isfinite(values)
-    padded = np.concatenate([[False], here, [False]])
-    alone = np.flatnonzero(here & ~padded[:-2] & ~padded[2:])
-    # A name without a line would stand in the legend for nothing.
-    label = name if name and np.any(here) else "_"
+    finite = np.isfinite(values)
+    padded = np.concatenate([[False], finite, [False]])
+    alone = np.flatnonzero(finite & ~padded[:-2] & ~padded[2:])
+    # A line without points has no entry in the legend.
+    label = name if name and np.any(finite) else "_"
     look: Any = {"color": colour, "lw": width, "gid": name, "label": label}
     axes.plot(places, values, dashes, **look)
     axes.plot(places[alone], values[alone], "o", color=colour, ms=3 + width)
 
 
 def set_span(axes: Axes, places: Array) -> None:
-    """Let an axis of forces or parameters hold just these places, or a single one in its middle."""
-    known = places[np.isfinite(places)]
-    if known.size:
-        low, high = float(known.min()), float(known.max())
+    """Set the limits of the x axis to the range of places, or around a single place.
+
+    Parameters
+    ----------
+    axes
+        The axes.
+    places
+        Places on the x axis, shape (m,).
+    """
+    finite = places[np.isfinite(places)]
+    if finite.size:
+        low, high = float(finite.min()), float(finite.max())
         margin = 0.0 if high > low else max(0.1 * abs(low), 0.1)
         axes.set_xlim(low - margin, high + margin)
 
 
 def start_at_zero(axes: Axes) -> None:
-    """Let an axis of frequencies hold 0 and all that is drawn, also where that is nothing."""
+    """Set the limits of the y axis to 0 and all drawn values, or to 0 and 1 without values."""
     high = axes.dataLim.y1 if 0.0 < axes.dataLim.y1 < np.inf else 1.0
     axes.set_ylim(-0.05 * high, 1.08 * high)
 
 
 def _cut_at_zero(places: Array, values: Array) -> tuple[Array, Array]:
-    """Insert the points at which a line of straight pieces crosses zero."""
-    known = np.isfinite(values[:-1]) & np.isfinite(values[1:])
-    left = np.flatnonzero(known & ((values[:-1] < 0) != (values[1:] < 0)))
+    """Insert the points at which a piecewise linear curve crosses zero."""
+    finite = np.isfinite(values[:-1]) & np.isfinite(values[1:])
+    left = np.flatnonzero(finite & ((values[:-1] < 0) != (values[1:] < 0)))
     part = values[left] / (values[left] - values[left + 1])
     cuts = places[left] + part * (places[left + 1] - places[left])
     return np.insert(places, left + 1, cuts), np.insert(values, left + 1, 0.0)

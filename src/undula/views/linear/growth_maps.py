@@ -22,7 +22,19 @@ _RINGING = ("edge of oscillation: frequency 0 below", "--")
 
 
 def draw_maps(figure: Figure, growth: GrowthCurve, values: Array, units: style.UnitNames) -> None:
-    """Draw rate and frequency over (parameter, force), with the boundaries of both on each."""
+    """Draw maps of rate and frequency over parameter and force, with the zeros of both.
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    growth
+        Rates and frequencies over parameter and force.
+    values
+        Values of the parameter.
+    units
+        Names of the units by quantity.
+    """
     across, up = np.argsort(values), np.argsort(growth.forces)
     places, forces = values[across], growth.forces[up]
     rates = growth.rates[np.ix_(across, up)].T
@@ -45,10 +57,10 @@ def draw_maps(figure: Figure, growth: GrowthCurve, values: Array, units: style.U
 
 
 def _draw_map(axes: Axes, x: Array, y: Array, field: Array, colours: str, span: Normalize) -> Any:
-    """Draw one cell around each value of a field, and give the bar of its colours."""
+    """Draw one cell around each value of a field; return the colour bar."""
     axes.set_facecolor(style.SHADOW)
     mesh: Any = axes.pcolormesh(_edges(x), _edges(y), field, cmap=colours, norm=span)
-    # As vectors thousands of cells would show the page through their seams.
+    # As vector graphics, thousands of cells would show gaps between them.
     mesh.set_rasterized(True)
     bar: Any = axes.figure.colorbar(mesh, ax=axes, pad=0.03, aspect=28)
     bar.outline.set_visible(False)
@@ -56,9 +68,9 @@ def _draw_map(axes: Axes, x: Array, y: Array, field: Array, colours: str, span: 
 
 
 def _draw_zero(axes: Axes, x: Array, y: Array, field: Array, name: str, dashes: str) -> None:
-    """Draw where a field is zero, if it is anywhere."""
-    known = field[np.isfinite(field)]
-    if min(field.shape) > 1 and known.size and known.min() < 0 < known.max():
+    """Draw the zero contour of a field, if it has one."""
+    finite = field[np.isfinite(field)]
+    if min(field.shape) > 1 and finite.size and finite.min() < 0 < finite.max():
         look: Any = {"levels": [0.0], "colors": "black", "linestyles": dashes, "linewidths": 1.5}
         axes.contour(x, y, field, **look).set_gid(name)
 
@@ -74,19 +86,19 @@ def _name_boundaries(figure: Figure, *, unknown: bool) -> None:
 
 
 def _continued(squares: Array) -> Array:
-    """Continue squares of frequencies to where they are 0, so that the edge crosses zero.
+    """Replace zero squares of frequencies by negative numbers, so that a contour has a zero.
 
-    Where two real eigenvalues meet, the square of the frequency grows from 0 in proportion to the
-    distance: two values beyond the edge tell where it is. Where another mode takes the lead they do
-    not, and the edge is put halfway.
+    Where two real eigenvalues meet, the square of the frequency grows linearly from 0, and two
+    values beyond the edge determine its place. Where another mode becomes the leading one they do
+    not, and the edge is placed halfway.
     """
     wide, inner = np.pad(squares, 2), slice(2, -2)
     lines, halves = np.full(squares.shape, np.inf), np.full(squares.shape, np.inf)
     for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
         first, second = (np.roll(wide, -k * step, axis)[inner, inner] for k in (1, 2))
         line = 2 * first - second
-        tells = (second > 0) & (line < first / 2)
-        lines = np.where(tells, np.minimum(lines, np.minimum(line, 0.0)), lines)
+        linear = (second > 0) & (line < first / 2)
+        lines = np.where(linear, np.minimum(lines, np.minimum(line, 0.0)), lines)
         halves = np.where(first > 0, np.minimum(halves, -first), halves)
     nearby = np.where(np.isfinite(lines), lines, halves)
     beyond = -squares[np.isfinite(squares)].max(initial=0.0)
@@ -94,12 +106,12 @@ def _continued(squares: Array) -> Array:
 
 
 def _around_zero(field: Array) -> tuple[Normalize, list[float]]:
-    """Give a scale that is linear near zero and logarithmic beyond, and where to put numbers."""
-    known = field[np.isfinite(field)]
-    sides = [side for side in (-known.min(initial=0.0), known.max(initial=0.0)) if side > 0]
+    """Return a scale that is linear near zero and logarithmic beyond, and its ticks."""
+    finite = field[np.isfinite(field)]
+    sides = [side for side in (-finite.min(initial=0.0), finite.max(initial=0.0)) if side > 0]
     largest = max(sides, default=1.0)
-    # Rates of growth run far beyond those of decay: the lesser side decides what is near zero, but
-    # more than three decades a side would be too many to tell apart.
+    # Rates of growth are far larger than those of decay: the smaller side sets the linear range,
+    # with at most three decades beyond it, which can still be distinguished.
     near = 10.0 ** np.floor(np.log10(max(min(sides, default=1.0), 1e-3 * largest)))
     decades = np.arange(1 + np.floor(np.log10(largest / near) + 1e-9))
     ticks = near * 10.0**decades
@@ -111,7 +123,7 @@ def _from_zero(field: Array) -> Normalize:
 
 
 def _edges(places: Array) -> Array:
-    """Give the edges of cells around places in rising order, which need not be evenly spaced."""
+    """Return the edges of cells around rising places, which may be unevenly spaced."""
     if len(places) == 1:
         half = max(0.1 * abs(float(places[0])), 0.1)
         return np.array([places[0] - half, places[0] + half])

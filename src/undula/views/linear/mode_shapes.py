@@ -1,4 +1,4 @@
-"""A mode of the straight filament: its shapes over one cycle."""
+"""Shapes of a mode of the straight filament over one cycle."""
 
 from typing import Any
 
@@ -17,29 +17,37 @@ _OTHER_MODES = 2
 
 
 def leading_shapes(spectrum: Spectrum) -> Array:
-    """Give the shapes of the leading mode over one cycle, in order of time.
+    """Return the shapes of the leading mode over one cycle, in the order of time.
 
     Parameters
     ----------
     spectrum : Spectrum
-        Eigenvalues and modes; growth is left out.
+        Eigenvalues and modes; the growth of the mode is left out.
 
     Returns
     -------
     ndarray of shape (k, m)
-        Displacements Re[y(s) exp(i phase)] at phases that divide one cycle evenly, from 0 on; a
-        single one if the eigenvalue is real within its error.
+        Displacements Re[y(s) exp(i phase)] at evenly spaced phases from 0 on; a single shape for an
+        eigenvalue that is real within its error.
     """
     turning = spectrum.values[0].imag
     if not abs(turning) > np.nan_to_num(spectrum.errors[0]):
         return np.asarray(spectrum.modes[:1].real)
-    # Of a pair, the one with a negative imaginary part goes through its phases backwards.
+    # The phases of an eigenvalue with negative imaginary part run backwards.
     phases = np.sign(turning) * 2 * np.pi * np.arange(_SHAPES)[:, None] / _SHAPES
     return np.asarray(np.real(spectrum.modes[0] * np.exp(1j * phases)))
 
 
 def draw_mode(figure: Figure, spectrum: Spectrum) -> None:
-    """Draw the leading mode into the right third of a figure, the filament upright."""
+    """Draw the leading mode into the right third of a figure, with the filament upright.
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    spectrum
+        Eigenvalues and modes.
+    """
     axes = figure.add_axes((0.69, 0.235, 0.285, 0.585))
     shapes = leading_shapes(spectrum)
     axes.set(xlim=(-1.1, 1.1), ylim=(0, 1.03), xticks=[])
@@ -61,7 +69,7 @@ def draw_mode(figure: Figure, spectrum: Spectrum) -> None:
 
 
 def _draw_others(axes: Axes, spectrum: Spectrum) -> int:
-    """Draw the next modes faintly, of a pair one, and tell how many."""
+    """Draw the next modes faintly, one for each complex pair; return their number."""
     upright = [k for k in range(1, len(spectrum.values)) if spectrum.values[k].imag >= 0]
     for k, dashes in zip(upright[:_OTHER_MODES], ("-", "--"), strict=False):
         look: Any = {"color": style.SHADOW, "lw": 1.2, "gid": "other mode", "zorder": 1}

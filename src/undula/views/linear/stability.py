@@ -1,4 +1,4 @@
-"""The stability of the straight filament under one load: growth, thresholds and leading mode.
+"""Stability of the straight filament under one load: growth, thresholds and leading mode.
 
 The left half is after the figure "Frequency of oscillations versus linear stability analysis" of
 Ling, Guo & Kanso (2018).
@@ -17,7 +17,7 @@ from undula.views.common import style
 from undula.views.linear.growth import draw_growth, set_span, start_at_zero
 from undula.views.linear.mode_shapes import draw_mode
 
-# Rows of text above a panel, in parts of its height.
+# Rows of text above a panel, in fractions of its height.
 _LOW, _HIGH = 1.04, 1.13
 
 
@@ -29,30 +29,40 @@ def stability_portrait(
     title: str,
     units: style.UnitNames = style.FILAMENT,
 ) -> Figure:
-    """Draw how the straight filament loses its stability, and the mode that leads at one force.
+    """Draw growth rate, frequency and thresholds of the straight filament, and its leading mode.
 
     Parameters
     ----------
     onset : Onset
-        The forces to mark.
+        The thresholds, which are marked.
     growth : GrowthCurve
-        The leading eigenvalue against the force, without a parameter.
+        The leading eigenvalue over the force, without a parameter.
     spectrum : Spectrum
-        Its leading mode is drawn: over one cycle, or as one curve if it does not oscillate.
+        Spectrum whose leading mode is drawn, over one cycle if it oscillates.
     title : str
-        The line above.
+        Title of the figure.
     units : mapping of str to str
-        Names of the model's units, as `Units.names` gives them; by default a filament's.
+        Names of the model's units, by quantity; by default those of a filament.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 5.5 inches, not known to pyplot.
+        10 by 5.5 inches, not registered with pyplot.
 
     Raises
     ------
     InputError
-        If `growth` has a parameter, or the three are not in one time unit.
+        `growth` has a parameter, or the three arguments have different time units.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import undula
+    >>> from undula.views import stability_portrait
+    >>> model = undula.Filament(segments=8, load=undula.TipLoad(75.0))
+    >>> growth = undula.growth_curve(model, np.linspace(0.0, 100.0, 5))
+    >>> onset, spectrum = undula.onset(model), undula.spectrum(model)
+    >>> figure = stability_portrait(onset, growth, spectrum, title="tip force")
     """
     if growth.parameter is not None:
         raise InputError(
@@ -77,7 +87,7 @@ def stability_portrait(
 
 @dataclass(frozen=True)
 class _Mark:
-    """A force to be marked by a vertical line: its name, value, text and look."""
+    """A vertical line at a force: its name, value, text and dashes."""
 
     name: str
     force: float
@@ -98,10 +108,10 @@ def _marks(onset: Onset) -> list[_Mark]:
 
 
 def _draw_marks(upper: Axes, lower: Axes, onset: Onset) -> None:
-    """Mark the thresholds, with their values in two rows above the panels."""
+    """Draw lines at the thresholds, with their values in two rows above the panels."""
     marks = _marks(onset)
     rightwards = bool(marks) and marks[-1].force < np.mean(upper.get_xlim())
-    # The text that runs over the other line stands above the end of that line.
+    # The text that crosses the other line is in the upper row.
     rows = (_HIGH, _LOW) if rightwards and len(marks) > 1 else (_LOW, _HIGH)
     for mark, row in zip(marks, rows, strict=False):
         look: Any = {"color": style.INK, "lw": 0.9, "ls": mark.dashes, "gid": mark.name}

@@ -1,4 +1,4 @@
-"""Forces at which states gain or lose stability, over a second parameter: several in one panel."""
+"""Thresholds of the force over a second parameter, several in one panel."""
 
 from collections.abc import Sequence
 from itertools import cycle
@@ -14,7 +14,7 @@ from undula.views.common import style
 from undula.views.common.legends import fitting_legend
 from undula.views.linear.growth import set_span, start_at_zero
 
-# Colours, and markers that tell the curves apart without them.
+# Colours and markers; the markers distinguish the curves without colours.
 _LOOKS = (
     (style.X_COLOUR, "o"),
     (style.Y_COLOUR, "s"),
@@ -22,7 +22,7 @@ _LOOKS = (
     (style.ENERGY_COLOUR, "D"),
     (style.ACTIVE_COLOUR, "v"),
 )
-# Thresholds that differ by more than this factor have a logarithmic axis.
+# Ratio of thresholds above which the axis is logarithmic.
 _DECADES_FROM = 30.0
 
 
@@ -33,29 +33,37 @@ def threshold_curves(
     title: str,
     units: style.UnitNames = style.FILAMENT,
 ) -> Figure:
-    """Draw forces over a parameter, one line with markers for each kind of threshold.
+    """Draw thresholds over a parameter, one line with markers for each kind.
 
     Parameters
     ----------
     curves : sequence of tuple
-        For each its name, the values of the parameter, the forces, NaN where there is none, and
-        their errors: three arrays of one shape (m,).
+        Name of each curve, values of the parameter, forces, NaN without a threshold, and errors of
+        the forces: arrays of shape (m,).
     parameter : str
-        Such as "load.slope".
+        Name of the parameter, such as "load.slope".
     title : str
-        The line above.
+        Title of the figure.
     units : mapping of str to str
-        Names of the models' units, as `Units.names` gives them; by default a filament's.
+        Names of the models' units, by quantity; by default those of a filament.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 5.5 inches, not known to pyplot. Lines break where there is no force.
+        10 by 5.5 inches, not registered with pyplot. Lines are broken at missing thresholds.
 
     Raises
     ------
     InputError
-        There is no curve, or the arrays of one differ in shape.
+        No curve is given, or the arrays of a curve differ in shape.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from undula.views import threshold_curves
+    >>> slopes = np.array([-1.0, 0.0, 1.0])
+    >>> curve = ("onset", slopes, np.array([90.0, 75.0, 60.0]), np.full(3, 0.1))
+    >>> figure = threshold_curves([curve], parameter="load.slope", title="made up")
     """
     if not curves:
         raise InputError("curves is empty: give at least one curve")
@@ -87,24 +95,24 @@ def _draw(
     axes: Axes, name: str, values: Array, forces: Array, errors: Array, colour: str, marker: str
 ) -> None:
     order = np.argsort(values)
-    places, heights, around = (np.asarray(some)[order] for some in (values, forces, errors))
-    known = np.isfinite(heights)
-    label = name if np.any(known) else f"{name}: none found"
+    places, heights, around = (np.asarray(array)[order] for array in (values, forces, errors))
+    shown = np.isfinite(heights)
+    label = name if np.any(shown) else f"{name}: none found"
     look: Any = {"color": colour, "lw": 1.6, "ms": 5.0, "gid": name, "label": label}
     axes.plot(places, heights, marker=marker, **look)
-    known &= np.isfinite(around)
+    shown &= np.isfinite(around)
     low, high = (heights + sign * around for sign in (-1.0, 1.0))
-    axes.vlines(places[known], low[known], high[known], color=colour, gid=f"{name}, error")
+    axes.vlines(places[shown], low[shown], high[shown], color=colour, gid=f"{name}, error")
 
 
 def _set_spans(axes: Axes, curves: Sequence[tuple[str, Array, Array, Array]]) -> None:
     places = np.concatenate([values for _, values, _, _ in curves])
-    # Room for half a marker at both ends.
+    # Half a marker fits at both ends.
     margin = 0.015 * float(np.ptp(places))
     set_span(axes, np.array([places.min() - margin, places.max() + margin]))
     forces = np.concatenate([forces for _, _, forces, _ in curves])
-    known = forces[np.isfinite(forces)]
-    if known.size and known.max() > _DECADES_FROM * known.min() > 0.0:
+    finite = forces[np.isfinite(forces)]
+    if finite.size and finite.max() > _DECADES_FROM * finite.min() > 0.0:
         axes.set_yscale("log")
     else:
         start_at_zero(axes)

@@ -1,4 +1,4 @@
-"""The forces at which the straight filament begins to ring and to oscillate, over a parameter."""
+"""Thresholds of the straight filament over a parameter: oscillatory force and Hopf force."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,27 +18,36 @@ _REGIONS = (
     ("straight, rings", style.FOCUS),
     ("oscillates", style.UNSTABLE),
 )
+# Ratio of thresholds above which the axis is logarithmic.
 _DECADES_FROM = 30.0
 
 
 def threshold_figure(
     curve: CriticalCurve, *, title: str, units: style.UnitNames = style.FILAMENT
 ) -> Figure:
-    """Draw the Hopf force and the oscillatory force over a parameter, and the frequency at onset.
+    """Draw Hopf force, oscillatory force and frequency at onset over a parameter.
 
     Parameters
     ----------
     curve : CriticalCurve
-        The thresholds; a value whose neighbours have none is drawn as a dot.
+        The thresholds; a threshold without neighbours is drawn as a dot.
     title : str
-        The line above.
+        Title of the figure.
     units : mapping of str to str
-        Names of the model's units, as `Units.names` gives them; by default a filament's.
+        Names of the model's units, by quantity; by default those of a filament.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 5.5 inches, not known to pyplot.
+        10 by 5.5 inches, not registered with pyplot.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import threshold_figure
+    >>> model = undula.Filament(segments=8, load=undula.LinearLoad(75.0))
+    >>> curve = undula.critical_curve(model, "load.slope", [0.0, 0.5])
+    >>> figure = threshold_figure(curve, title="linear load")
     """
     paper_time = any(onset.paper_time for onset in curve.onsets)
     with style.figure_style():
@@ -54,7 +63,7 @@ def threshold_figure(
         draw_points(lower, places, curve.frequencies[order], style.Y_COLOUR, name="onset")
         set_span(upper, places)
         _name_all(figure, upper)
-        _tell_gaps(lower, curve)
+        _note_gaps(lower, curve)
         start_at_zero(lower)
         lower.yaxis.set_major_locator(MaxNLocator(4))
         upper.tick_params(labelbottom=False)
@@ -66,7 +75,7 @@ def threshold_figure(
 
 
 def _draw_forces(axes: Axes, curve: CriticalCurve, order: NDArray[np.intp]) -> None:
-    """Draw both thresholds, and shade the regions that they part."""
+    """Draw both thresholds and shade the regions between them."""
     places, hopf, ringing = (
         field[order] for field in (curve.values, curve.forces, curve.oscillatory_forces)
     )
@@ -79,7 +88,7 @@ def _draw_forces(axes: Axes, curve: CriticalCurve, order: NDArray[np.intp]) -> N
         (hopf, np.full_like(hopf, high)),
     )
     for (bottom, top), (name, colour) in zip(bounds, _REGIONS, strict=True):
-        # Between a value with a Hopf force and one without it is not known where the edge runs.
+        # Between values with and without a Hopf force the edge of a region is unknown.
         for kind in (np.isfinite(hopf), np.isnan(hopf)):
             here = kind & (bottom <= top)
             axes.fill_between(places, bottom, top, where=here, color=colour, lw=0, gid=name)
@@ -88,11 +97,11 @@ def _draw_forces(axes: Axes, curve: CriticalCurve, order: NDArray[np.intp]) -> N
 
 
 def _force_span(axes: Axes, forces: Array, searched: Array) -> tuple[float, float]:
-    """Let the force axis hold the thresholds, logarithmic where they are of different decades."""
-    known = forces[np.isfinite(forces)]
-    low, high = 0.0, 1.2 * float(known.max() if known.size else searched.max(initial=1.0))
-    if known.size and high > _DECADES_FROM * known.min() > 0:
-        low = float(known.min()) / 2
+    """Set the limits of the force axis, logarithmic for thresholds of different decades."""
+    finite = forces[np.isfinite(forces)]
+    low, high = 0.0, 1.2 * float(finite.max() if finite.size else searched.max(initial=1.0))
+    if finite.size and high > _DECADES_FROM * finite.min() > 0:
+        low = float(finite.min()) / 2
         axes.set_yscale("log")
     axes.set_ylim(low, high)
     return low, high
@@ -104,8 +113,8 @@ def _name_all(figure: Figure, axes: Axes) -> None:
     fitting_legend(figure, [*lines, *regions], (0.08, 0.935), handlelength=2.2)
 
 
-def _tell_gaps(axes: Axes, curve: CriticalCurve) -> None:
-    """Say up to which force there was nothing to find where there is no Hopf force."""
+def _note_gaps(axes: Axes, curve: CriticalCurve) -> None:
+    """Write the end of the search for values without a Hopf force."""
     searched = [onset.searched_to for onset in curve.onsets if onset.hopf is None]
     if searched:
         text = rf"no loss of stability up to $F$ = {min(searched):.4g}"

@@ -1,1 +1,1 @@
-"""Figures of a ramp."""
+"""Figures of quasi-static ramps."""

@@ -1,4 +1,4 @@
-"""The energies of series of steps against the parameter, with thresholds as vertical lines."""
+"""Energies along ramps over the parameter, with thresholds as vertical lines."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,9 +12,9 @@ from undula.views.common import style
 from undula.views.common.labels import Label
 from undula.views.ramp.series import StepSeries
 
-# Points: where the two ways agree, the dot of the one lies in the ring of the other.
+# Sizes of symbols [points]: where both directions agree, a dot lies in a ring.
 _DOT, _RING, _EDGE = 3.0, 5.4, 0.9
-#: By how much dots are larger that stand for themselves.
+#: Factor by which dots are larger in a legend.
 ALONE = 5.0 / _DOT
 
 
@@ -23,10 +23,21 @@ def draw_energies(
 ) -> None:
     """Draw least and greatest energy of each step, joined, in the colour of its verdict.
 
-    Points have the group identity of their verdict and direction, as "spinning, up".
+    The group identity of points is verdict and direction, as in "spinning, up".
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    axes
+        The axes.
+    series
+        The ramp.
+    colours
+        Colours of the verdicts.
     """
     names = np.array(series.verdicts)
-    # Rings of neighbours should not cover one another.
+    # Rings of neighbouring steps must not overlap.
     width = 72.0 * axes.get_position().width * figure.get_figwidth()
     size = min(1.0, max(0.3, width / np.unique(series.values).size / _RING))
     for verdict in dict.fromkeys(series.verdicts):
@@ -47,26 +58,56 @@ def draw_energies(
     axes.set_xlabel(parameter_label(series))
 
 
-def draw_thresholds(axes: Axes, known: Mapping[str, float]) -> None:
-    """Draw a line at each threshold, with the group identity "threshold"."""
-    for value in known.values():
+def draw_thresholds(axes: Axes, thresholds: Mapping[str, float]) -> None:
+    """Draw a line at each threshold, with the group identity "threshold".
+
+    Parameters
+    ----------
+    axes
+        The axes.
+    thresholds
+        Forces of the thresholds by name.
+    """
+    for value in thresholds.values():
         axes.axvline(value, color=style.INK, lw=0.8, ls="--", zorder=1, gid="threshold")
 
 
 def threshold_labels(
-    series: StepSeries, known: Mapping[str, float], left: float, right: float
+    series: StepSeries, thresholds: Mapping[str, float], left: float, right: float
 ) -> list[Label]:
-    """Return names and values of thresholds for the panel between these edges."""
+    """Return labels of thresholds for a panel between two edges.
+
+    Parameters
+    ----------
+    series
+        The ramp.
+    thresholds
+        Forces of the thresholds by name.
+    left
+        Left edge of the panel in fractions of the figure.
+    right
+        Right edge of the panel in fractions of the figure.
+    """
     low, high = series.span
     scale = (right - left) / (high - low)
     return [
         Label(left + scale * (value - low), f"{name}\n{value:.4g}", style.INK)
-        for name, value in known.items()
+        for name, value in thresholds.items()
     ]
 
 
 def marker(colour: str, *, up: bool, size: float) -> Any:
-    """Return the look of the points of one way: filled for up, open for down."""
+    """Return the look of points in one direction: filled for up, open for down.
+
+    Parameters
+    ----------
+    colour
+        Colour of the points.
+    up
+        True for rising parameter.
+    size
+        Size relative to that of a dot.
+    """
     if up:
         return {"ls": "", "marker": "o", "ms": _DOT * size, "mew": 0.0, "mfc": colour, "zorder": 3}
     edge = {"mec": colour, "mfc": "none", "mew": _EDGE * max(size, 0.5), "zorder": 4}
@@ -74,7 +115,7 @@ def marker(colour: str, *, up: bool, size: float) -> Any:
 
 
 def parameter_label(series: StepSeries) -> str:
-    """Name the parameter with its unit."""
+    """Return the name of the parameter with its unit."""
     if series.parameter == "load.force":
         return style.force_label(series.units)
     return style.parameter_label(series.parameter)

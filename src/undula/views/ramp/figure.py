@@ -1,4 +1,4 @@
-"""The figure of series of steps: energies along the parameter, and shapes on the way.
+"""Figure of quasi-static ramps: energies over the parameter, and shapes of some steps.
 
 After the figure on bead-spring chains of Ling, Guo & Kanso (2018).
 """
@@ -32,10 +32,10 @@ from undula.views.ramp.gallery import (
 )
 from undula.views.ramp.series import StepSeries, read_series, verdict_colours
 
-# Inches: least width of a column, height of the figure, what stands below a panel, and the gap
-# below the words of a cell.
+# Least width of a column, height of the figure, room below a panel, and gap below the words of a
+# cell [inches].
 _COLUMN, _HEIGHT, _LABEL, _GAP = 3.3, 7.0, 0.6, 0.16
-# Parts of the figure: its foot, and the names of the series between legend and thresholds.
+# Bottom of the galleries and baseline of the names of the ramps, in fractions of the figure.
 _FOOT, _NAMES = 0.012, 0.884
 
 
@@ -45,54 +45,61 @@ def ramp_diagram(
     thresholds: Sequence[Mapping[str, float]] = (),
     title: str | None = None,
 ) -> Figure:
-    """Draw series of steps: their bending energy against the parameter, and shapes on the way.
+    """Draw ramps: bending energies over the parameter, and shapes of some steps.
 
     Parameters
     ----------
     datasets : sequence of xarray.Dataset
-        At least one, as `load_ramp` gives them, all along one parameter; each is a column.
+        At least one ramp, as `undula.load_ramp` returns it, all along the same parameter; each is
+        a column.
     thresholds : sequence of mapping of str to float
-        For each series, in their order, names and values of solved thresholds; those beyond the
-        values of the steps are left out.
+        Names and values of solved thresholds for each ramp; values beyond the steps are left out.
     title : str, optional
-        Replaces the line above, which tells model and load of a single series.
+        Title of the figure; by default model and load of a single ramp.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 7 inches, wider for more than three series; not known to pyplot.
+        10 by 7 inches, wider for more than three ramps; not registered with pyplot.
 
     Raises
     ------
     InputError
-        There is no series, one lacks a variable, or they are along different parameters.
+        No ramp is given, a variable is missing, or the ramps are along different parameters.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import ramp_diagram
+    >>> figure = ramp_diagram([undula.load_ramp("steps.nc")])  # doctest: +SKIP
+    >>> figure.savefig("steps.png")  # doctest: +SKIP
     """
     series = read_series(datasets)
-    known = _known(series, thresholds)
-    colours = verdict_colours([verdict for one in series for verdict in one.verdicts])
+    shown = _shown(series, thresholds)
+    colours = verdict_colours([verdict for ramp in series for verdict in ramp.verdicts])
     with style.figure_style():
         figure = Figure(figsize=(max(10.0, _COLUMN * len(series)), _HEIGHT))
-        alone = series[0].load if len(series) == 1 else ""
-        style.write_title(figure, alone if title is None else title, (_in(figure, 0.22), 0.955))
-        _name_all(figure, series, colours, thresholds=any(known))
+        load = series[0].load if len(series) == 1 else ""
+        style.write_title(figure, load if title is None else title, (_in(figure, 0.22), 0.955))
+        _name_all(figure, series, colours, thresholds=any(shown))
         top = _draw_galleries(figure, series, colours)
-        _draw_panels(figure, series, known, colours, bottom=top + _LABEL / _HEIGHT)
+        _draw_panels(figure, series, shown, colours, bottom=top + _LABEL / _HEIGHT)
     return figure
 
 
-def _known(
+def _shown(
     series: Sequence[StepSeries], thresholds: Sequence[Mapping[str, float]]
 ) -> list[dict[str, float]]:
-    """Return the thresholds of each series that lie on its axis."""
-    given = [*thresholds, *({} for _ in series)]
+    """Return the thresholds of each ramp that lie on its axis."""
+    filled = [*thresholds, *({} for _ in series)]
     return [
-        {name: value for name, value in some.items() if one.span[0] <= value <= one.span[1]}
-        for one, some in zip(series, given, strict=False)
+        {name: value for name, value in own.items() if ramp.span[0] <= value <= ramp.span[1]}
+        for ramp, own in zip(series, filled, strict=False)
     ]
 
 
 def _in(figure: Figure, inches: float) -> float:
-    """Return a width in inches as a part of the figure."""
+    """Return a width in inches as a fraction of the figure."""
     return inches / figure.get_figwidth()
 
 
@@ -105,21 +112,21 @@ def _columns(figure: Figure, count: int) -> list[tuple[float, float]]:
 def _draw_galleries(
     figure: Figure, series: Sequence[StepSeries], colours: Mapping[str, str]
 ) -> float:
-    """Draw shapes of some steps of each series; return where the galleries end above."""
+    """Draw shapes of some steps of each ramp; return the upper end of the galleries."""
     rows, across = (1, 7) if len(series) == 1 else (2, 4) if len(series) == 2 else (2, 3)
     columns = _columns(figure, len(series))
     pitch = (columns[0][1] - columns[0][0]) / across
     inches = pitch * figure.get_figwidth()
-    cells = [_cells(one, rows * across, colours, inches) for one in series]
-    # Every regime is shown, also where there are more of them than places.
-    rows = max(rows, *(-(-len(some) // across) for some in cells))
-    every = [cell for some in cells for cell in some]
-    view, words = common_view(every), _GAP + LINE * max(len(cell.words) for cell in every)
-    # Half of the height is for the galleries, at most.
+    galleries = [_cells(ramp, rows * across, colours, inches) for ramp in series]
+    # Every regime is shown, even if a gallery then needs more rows.
+    rows = max(rows, *(-(-len(gallery) // across) for gallery in galleries))
+    cells = [cell for gallery in galleries for cell in gallery]
+    view, words = common_view(cells), _GAP + LINE * max(len(cell.words) for cell in cells)
+    # The galleries take at most half of the height.
     wide = min(0.94 * inches, (0.5 * _HEIGHT / rows - words) / view.aspect)
     height = (wide * view.aspect + words) / _HEIGHT
-    for (left, _), some in zip(columns, cells, strict=True):
-        for place, cell in enumerate(some):
+    for (left, _), gallery in zip(columns, galleries, strict=True):
+        for place, cell in enumerate(gallery):
             row, column = divmod(place, across)
             middle = left + (column + 0.5) * pitch
             foot = _FOOT + (rows - row - 1) * height + words / _HEIGHT
@@ -132,8 +139,8 @@ def _cells(series: StepSeries, count: int, colours: Mapping[str, str], inches: f
     verdicts, back = series.verdicts, series.up != series.up[0]
     cells = []
     for k in chosen_steps(series.values, verdicts, back, count):
-        way = (" up" if series.up[k] else " down") if series.there_and_back else ""
-        words = words_below(f"{series.values[k]:.6g}{way}", verdicts[k], inches)
+        direction = (" up" if series.up[k] else " down") if series.there_and_back else ""
+        words = words_below(f"{series.values[k]:.6g}{direction}", verdicts[k], inches)
         cells.append(Cell(series.shapes[k], words, colours[verdicts[k]]))
     return cells
 
@@ -141,32 +148,32 @@ def _cells(series: StepSeries, count: int, colours: Mapping[str, str], inches: f
 def _draw_panels(
     figure: Figure,
     series: Sequence[StepSeries],
-    known: Sequence[Mapping[str, float]],
+    thresholds: Sequence[Mapping[str, float]],
     colours: Mapping[str, str],
     *,
     bottom: float,
 ) -> None:
-    """Draw the energies of each series, with the names of the thresholds above."""
+    """Draw the energies of each ramp, with the names of the thresholds above."""
     edges = [
         (left + _in(figure, 0.6), right - _in(figure, 0.1))
         for left, right in _columns(figure, len(series))
     ]
-    each = list(zip(series, known, edges, strict=True))
-    labels = [threshold_labels(one, some, *ends) for one, some, ends in each]
-    tops = [label_above(figure, some, *ends) for some, ends in zip(labels, edges, strict=True)]
-    for named, top in zip(labels, tops, strict=True):
-        for label in named:
-            # Leaders go on where the panel of another column ends lower.
+    panels = list(zip(series, thresholds, edges, strict=True))
+    labels = [threshold_labels(ramp, own, *ends) for ramp, own, ends in panels]
+    tops = [label_above(figure, own, *ends) for own, ends in zip(labels, edges, strict=True)]
+    for own_labels, top in zip(labels, tops, strict=True):
+        for label in own_labels:
+            # Leaders continue where the panel of another column ends lower.
             line = [label.place, label.place], [min(tops), top]
             figure.add_artist(Line2D(*line, color=label.colour, lw=0.8))
-    for one, some, (left, right) in each:
+    for ramp, own, (left, right) in panels:
         axes = figure.add_axes((left, bottom, right - left, min(tops) - bottom))
-        draw_energies(figure, axes, one, colours)
-        draw_thresholds(axes, some)
-        if one is series[0] or one.units != series[0].units:
-            axes.set_ylabel(style.energy_label(one.units))
+        draw_energies(figure, axes, ramp, colours)
+        draw_thresholds(axes, own)
+        if ramp is series[0] or ramp.units != series[0].units:
+            axes.set_ylabel(style.energy_label(ramp.units))
         if len(series) > 1:
-            figure.text(left, _NAMES, one.load)
+            figure.text(left, _NAMES, ramp.load)
 
 
 def _name_all(
@@ -176,7 +183,7 @@ def _name_all(
         Line2D([], [], label=verdict, **marker(colour, up=True, size=ALONE))
         for verdict, colour in colours.items()
     ]
-    if any(one.there_and_back for one in series):
+    if any(ramp.there_and_back for ramp in series):
         handles += [
             Line2D([], [], label=name, **marker(style.QUIET, up=name == "up", size=1.0))
             for name in ("up", "down")

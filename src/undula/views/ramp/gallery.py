@@ -1,4 +1,4 @@
-"""Shapes of some steps of a series, drawn over one another, each step in a cell of its own."""
+"""Gallery of shapes: one cell for each of some steps, with the shapes over one another."""
 
 from collections.abc import Sequence
 from itertools import groupby
@@ -15,19 +15,19 @@ from undula.analysis.observables.shapes import transverse
 from undula.views.common import style
 from undula.views.run.scene import Floats
 
-#: Links up to which the joints are drawn as dots.
+#: Largest number of links for which joints are drawn as dots.
 FEW_LINKS = 12
-# How far one looks down on the ground [rad].
+# Elevation of the view above the ground [rad].
 _ELEVATION = np.deg2rad(20.0)
 _LEAST_HALF_WIDTH = 0.3
-#: Inches between lines of words.
+#: Distance between lines of words [inches].
 LINE = 0.155
-# Inches that a letter takes, rather more than less.
+# Upper estimate of the width of a letter [inches].
 _LETTER = 0.062
 
 
 class Cell(NamedTuple):
-    """What a cell shows: shapes (k, N + 1, 3) in the course of time, and lines of words below."""
+    """A cell: shapes (k, N + 1, 3) in the order of time, lines of words below, and their colour."""
 
     shapes: Floats
     words: tuple[str, ...]
@@ -35,7 +35,7 @@ class Cell(NamedTuple):
 
 
 class View(NamedTuple):
-    """What all cells of a figure have in common: half their width, their lowest and highest [L]."""
+    """Common frame of all cells of a figure: half of the width, lowest and highest end [L]."""
 
     half: float
     low: float
@@ -50,45 +50,45 @@ class View(NamedTuple):
 def chosen_steps(
     values: Floats, verdicts: Sequence[str], back: NDArray[np.bool_], count: int
 ) -> list[int]:
-    """Choose steps that tell most: one of each regime, the others far from one another.
+    """Choose steps for a gallery: one of each regime, the others far from one another.
 
-    Of the way back only those count whose verdict differs from the one on the way there.
+    Steps on the way back are chosen only if their verdict differs from that on the way there.
 
     Parameters
     ----------
     values : ndarray of shape (m,)
-        The parameter, m at least 1.
+        Values of the parameter, m at least 1.
     verdicts : sequence of str
-        One for each step.
+        Verdict of each step.
     back : ndarray of shape (m,)
-        Whether the step belongs to the way back.
+        True for steps on the way back.
     count : int
-        How many to choose, if there are as many; more where there are more verdicts.
+        Largest number of steps, exceeded only to show every verdict.
 
     Returns
     -------
     list of int
-        In the order of the steps.
+        Indices of the steps in their order.
     """
     there = {values[k]: verdicts[k] for k in range(back.size) if not back[k]}
     new = np.array([not back[k] or there.get(values[k]) != verdicts[k] for k in range(back.size)])
-    found = _one_of_each(verdicts, new, count)
-    # Places on the way rather than values: there and back are two different steps.
+    chosen = _one_of_each(verdicts, new, count)
+    # Distances are along the ramp, since steps there and back at one value are different.
     places = np.append(0.0, np.cumsum(np.abs(np.diff(values))))
-    while len(found) < min(count, int(new.sum())):
-        away = np.abs(places[:, None] - places[found]).min(axis=1)
-        away[found], away[~new] = -1.0, -1.0
-        found.append(int(np.argmax(away)))
-    return sorted(found)
+    while len(chosen) < min(count, int(new.sum())):
+        distance = np.abs(places[:, None] - places[chosen]).min(axis=1)
+        distance[chosen], distance[~new] = -1.0, -1.0
+        chosen.append(int(np.argmax(distance)))
+    return sorted(chosen)
 
 
 def seen_from_aside(shapes: Floats) -> Floats:
-    """Return shapes (..., 3) as seen a little from above, across the plane of their motion.
+    """Project shapes (..., 3) onto a view slightly from above, across the plane of motion.
 
     Returns
     -------
     ndarray of shape (..., 2)
-        To the right and upwards [L].
+        Coordinates to the right and upwards [L].
     """
     sides = transverse(shapes)
     # The principal axis of the motion is half the argument of the sum of squares.
@@ -98,12 +98,22 @@ def seen_from_aside(shapes: Floats) -> Floats:
 
 
 def words_below(value: str, verdict: str, width: float) -> tuple[str, ...]:
-    """Return lines of words, the verdict in as many as so many inches make necessary."""
+    """Return lines of words: the value, and the verdict wrapped to a width in inches.
+
+    Parameters
+    ----------
+    value
+        The first line.
+    verdict
+        The verdict.
+    width
+        Width of the lines [inches].
+    """
     return (value, *wrap(verdict, max(1, int(width / _LETTER))))
 
 
 def common_view(cells: Sequence[Cell]) -> View:
-    """Return the frame that holds the shapes of all cells, with the ground below them."""
+    """Return the frame that contains the shapes of all cells and the ground."""
     seen = np.concatenate([seen_from_aside(cell.shapes).reshape(-1, 2) for cell in cells])
     half = max(_LEAST_HALF_WIDTH, 1.08 * float(np.abs(seen[:, 0]).max()))
     depth = np.sin(_ELEVATION) * half
@@ -112,7 +122,19 @@ def common_view(cells: Sequence[Cell]) -> View:
 
 
 def draw_cell(figure: Figure, cell: Cell, view: View, place: tuple[float, float, float]) -> None:
-    """Draw a cell whose left edge, foot and width are given in parts of the figure."""
+    """Draw a cell; `place` is its left edge, bottom and width in fractions of the figure.
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    cell
+        The cell.
+    view
+        Common frame of all cells.
+    place
+        Left edge, bottom and width in fractions of the figure.
+    """
     left, bottom, width = place
     height = width * view.aspect * figure.get_figwidth() / figure.get_figheight()
     axes = figure.add_axes((left, bottom, width, height), gid="cell")
@@ -134,17 +156,17 @@ def draw_cell(figure: Figure, cell: Cell, view: View, place: tuple[float, float,
     axes.plot([0.0], [0.0], "s", ms=3.2, color=style.INK, zorder=5)
     below: Any = {"ha": "center", "fontsize": 8.5, "color": cell.colour, "gid": "cell words"}
     for number, words in enumerate(cell.words, start=1):
-        # On lines of their own, whatever letters reach below them.
+        # Separate texts keep their line spacing for letters with descenders.
         foot = bottom - number * LINE / figure.get_figheight()
         figure.text(left + 0.5 * width, foot, words, **below)
 
 
 def _one_of_each(verdicts: Sequence[str], new: NDArray[np.bool_], count: int) -> list[int]:
-    """Return the middles of regimes, of each verdict the longest before any other."""
+    """Return the middle steps of regimes; the longest regime of each verdict comes first."""
     places = np.flatnonzero(new).tolist()
     rows = [list(row) for _, row in groupby(places, key=lambda k: verdicts[k])]
     rows.sort(key=len, reverse=True)
     first = {verdicts[row[0]]: row for row in reversed(rows)}
     others = [row for row in rows if first[verdicts[row[0]]] is not row]
-    taken = [*first.values(), *others[: max(0, count - len(first))]]
-    return [row[(len(row) - 1) // 2] for row in taken]
+    selected = [*first.values(), *others[: max(0, count - len(first))]]
+    return [row[(len(row) - 1) // 2] for row in selected]

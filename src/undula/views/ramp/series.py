@@ -1,4 +1,4 @@
-"""A stored series of steps as it is drawn."""
+"""Stored ramps in the form that figures use."""
 
 import json
 from collections.abc import Sequence
@@ -13,32 +13,35 @@ from undula.views.common import style
 from undula.views.common.verdict_styles import look_of
 from undula.views.run.scene import Floats
 
+#: Variables of a stored ramp that figures need.
 NEEDED = ("value", "direction", "verdict", "bending_energy_min", "bending_energy_max", "shapes")
 
-# Room at both ends of the parameter axis, as a share of it.
+# Margin at both ends of the parameter axis, as a fraction of its span.
 _ENDS = 0.02
 
 
 @dataclass(frozen=True)
 class StepSeries:
-    """A series of steps as the views see it, in the units that it names.
+    """A ramp in the form that figures use.
 
     Attributes
     ----------
     load : str
         Model and load in words.
     parameter : str
+        Name of the varied parameter.
     units : mapping of str to str
         Names of units by quantity.
     values : ndarray of shape (m,)
-        The parameter.
+        Values of the parameter.
     up : ndarray of shape (m,)
-        Whether the parameter was going up.
+        True for steps with rising parameter.
     verdicts : tuple of str
+        Verdict of each step.
     low, high : ndarray of shape (m,)
         Least and greatest bending energy.
     shapes : ndarray of shape (m, k, n, 3)
-        Shapes of each step, in the course of time [L].
+        Shapes of each step, in the order of time [L].
     """
 
     load: str
@@ -53,27 +56,27 @@ class StepSeries:
 
     @property
     def there_and_back(self) -> bool:
-        """Whether the series has a way back."""
+        """True if the ramp returns."""
         return bool(np.any(self.up != self.up[0]))
 
     @property
     def span(self) -> tuple[float, float]:
-        """The ends of the parameter axis."""
+        """Ends of the parameter axis."""
         low, high = float(self.values.min()), float(self.values.max())
         margin = _ENDS * (high - low) or max(0.1 * abs(low), 0.1)
         return low - margin, high + margin
 
 
 def read_series(datasets: Sequence[xr.Dataset]) -> list[StepSeries]:
-    """Take from stored series what the views draw.
+    """Return stored ramps in the form that figures use.
 
     Raises
     ------
     InputError
-        There is none, one lacks a variable, or they are along different parameters.
+        No ramp is given, a variable is missing, or the ramps are along different parameters.
     """
     series = [_read(dataset) for dataset in datasets]
-    parameters = sorted({one.parameter for one in series})
+    parameters = sorted({ramp.parameter for ramp in series})
     if not parameters:
         raise InputError("datasets is empty: give at least one series of steps")
     if len(parameters) > 1:
@@ -84,7 +87,7 @@ def read_series(datasets: Sequence[xr.Dataset]) -> list[StepSeries]:
 
 
 def verdict_colours(verdicts: Sequence[str]) -> dict[str, str]:
-    """Give each verdict the colour that it has in every figure, in the order of appearance."""
+    """Return the colours of verdicts by name, in the order of appearance."""
     return {verdict: look_of(verdict).colour for verdict in dict.fromkeys(verdicts)}
 
 

@@ -1,7 +1,7 @@
-"""The movie of a run: the filament with its shadow and trail, beside its history.
+"""Movie of a run: the filament with its shadow and trail, next to its history.
 
-A short overview of the whole run comes first, then its last few periods, slowly. What does not
-move is drawn once; each image is that picture with the moving parts drawn over it.
+A short overview of the whole run is followed by its last few periods in slow motion. The static
+parts are drawn once, and the moving parts over them in each image.
 """
 
 from collections.abc import Callable, Iterator
@@ -33,7 +33,7 @@ _TRAIL_WITHOUT_PERIOD = 0.1
 
 @dataclass(frozen=True)
 class Stage:
-    """The picture that does not change, and the parts that move over it."""
+    """The static picture and the moving parts."""
 
     canvas: Any
     filament: Any
@@ -64,11 +64,11 @@ def movie(
     Parameters
     ----------
     run : xarray.Dataset
-        A stored run, as `load_result` gives it.
+        A stored run, as `undula.load_result` returns it.
     path : Path or str
-        The file to make, ending in .mp4; an older one is replaced once the new one is complete.
+        The file, ending in .mp4; an older file is replaced when the new one is complete.
     frames : int
-        Number of images, at least 2; a quarter of them goes to the overview.
+        Number of images, at least 2; a quarter of them shows the overview.
     fps : int
         Images per second, at least 1.
     progress : callable, optional
@@ -77,12 +77,19 @@ def movie(
     Returns
     -------
     Path
-        The file made: H.264, 1280 by 720 pixels.
+        The file: H.264, 1280 by 720 pixels.
 
     Raises
     ------
     InputError
-        If the run has too few samples, a number is out of range, or the folder cannot be written.
+        The run has too few samples, a number is out of range, or the folder cannot be written.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import movie
+    >>> stored = undula.load_result("results/spinning/run.nc")  # doctest: +SKIP
+    >>> movie(stored, "spinning.mp4")  # doctest: +SKIP
     """
     if frames < 2 or fps < 1:
         raise InputError(f"frames = {frames}, fps = {fps}: ask for at least 2 frames and 1 fps")
@@ -98,7 +105,15 @@ def movie(
 
 
 def frame_times(scene: Scene, frames: int) -> Floats:
-    """Choose the time of each image [T]: a quick pass up to the last periods, then slowly on."""
+    """Return the time of each image [T]: fast up to the last periods, then in slow motion.
+
+    Parameters
+    ----------
+    scene
+        The run.
+    frames
+        Number of images.
+    """
     if scene.focus is None:
         return np.linspace(scene.start, scene.end, frames)
     quick = max(1, round(_OVERVIEW * frames))
@@ -124,7 +139,7 @@ def _build(scene: Scene, times: Floats) -> Stage:
 
 
 def _moving_parts(axes: Any) -> dict[str, Any]:
-    """Make filament, shadow, tip, trail and the trail's shadow, all still empty."""
+    """Return empty artists for filament, shadow, tip, trail and the trail's shadow."""
     dark = style.shape_colours(1)[0]
     parts = {
         "filament": axes.plot([], [], [], color=dark, lw=4.0)[0],
@@ -156,15 +171,15 @@ def _images(
 
 
 def _trails(scene: Scene, times: Floats) -> Floats:
-    """Give the tip's path (k, pieces + 1, 3) over the last period before each image."""
+    """Return the tip's path (k, pieces + 1, 3) over the last period before each image."""
     length = scene.period or _TRAIL_WITHOUT_PERIOD * scene.duration
     back = length * np.linspace(1, 0, _TRAIL_PIECES + 1)
-    asked = np.maximum(times[:, None] - back, scene.start)
-    return tip_at(scene, asked.ravel()).reshape(*asked.shape, 3)
+    instants = np.maximum(times[:, None] - back, scene.start)
+    return tip_at(scene, instants.ravel()).reshape(*instants.shape, 3)
 
 
 def _move(scene: Scene, stage: Stage, time: float, shape: Floats, trail: Floats) -> None:
-    """Put every moving part in its place for one image, and draw it."""
+    """Move all parts to their places in one image, and draw them."""
     floor = ground(stage.filament.axes)
     stage.filament.set_data_3d(*shape.T)
     stage.shadow.set_data_3d(shape[:, 0], shape[:, 1], np.full(len(shape), floor))
@@ -172,8 +187,8 @@ def _move(scene: Scene, stage: Stage, time: float, shape: Floats, trail: Floats)
     stage.trail.set_segments(np.stack([trail[:-1], trail[1:]], axis=1))
     stage.trail.do_3d_projection()
     stage.trail_shadow.set_data_3d(trail[:, 0], trail[:, 1], np.full(len(trail), floor))
-    pace = "" if scene.focus is None or time < scene.focus[0] else "   ·   in slow motion"
-    stage.clock.set_text(f"$t$ = {time:.4f} $T${pace}")
+    speed = "" if scene.focus is None or time < scene.focus[0] else "   ·   in slow motion"
+    stage.clock.set_text(f"$t$ = {time:.4f} $T${speed}")
     for marker in stage.markers:
         marker.set_xdata([time, time])
     for part in stage.moving:

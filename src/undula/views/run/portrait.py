@@ -1,4 +1,4 @@
-"""The portrait of a run: how it moves in space, and its tip, energy and power against time.
+"""Portrait of a run: shapes in space, and tip, energy and power over time.
 
 After the figure "Three-dimensional buckling" of Ling, Guo & Kanso (2018), with the power added.
 """
@@ -24,27 +24,34 @@ _PATH_POINTS = 800
 
 
 def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> Figure:
-    """Draw one run: its shapes over the last period in space, and its history.
+    """Draw the shapes of a run over its last period, and its history.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A stored run, as `load_result` gives it.
+        A stored run, as `undula.load_result` returns it.
     title : str, optional
-        Replaces the line that tells load, verdict and frequency.
+        Title of the figure; by default load, verdict and frequency.
     shapes : int
-        How many shapes to draw, at least 2. A run without a period, or with samples too sparse
-        to join, shows its own samples: at most this many.
+        Number of shapes, at least 2. A run without a period, or with samples too sparse for
+        interpolation, is shown by at most this many of its own samples.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 5.5 inches, not known to pyplot; save it with `savefig`.
+        10 by 5.5 inches, not registered with pyplot.
 
     Raises
     ------
     InputError
-        If `shapes` is below 2, or the run has too few samples or lacks a variable.
+        `shapes` is below 2, or the run has too few samples or lacks a variable.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import portrait
+    >>> stored = undula.load_result("results/spinning/run.nc")  # doctest: +SKIP
+    >>> portrait(stored).savefig("spinning.png")  # doctest: +SKIP
     """
     if shapes < 2:
         raise InputError(f"shapes = {shapes}: ask for at least 2")
@@ -59,7 +66,7 @@ def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> 
 
 
 def headline(scene: Scene) -> str:
-    """Tell load, verdict and frequency of a run in one line."""
+    """Return load, verdict and frequency of a run in one line."""
     parts = [scene.load, scene.verdict]
     if scene.frequency is not None:
         parts.append(f"{scene.frequency:.4g} {style.RATE_UNIT}")
@@ -67,9 +74,17 @@ def headline(scene: Scene) -> str:
 
 
 def shape_times(scene: Scene, count: int) -> Floats:
-    """Choose the times of the shapes: evenly over the last period, or over what stands for it."""
+    """Return the times of the shapes: evenly over the last period, or over the shown part.
+
+    Parameters
+    ----------
+    scene
+        The run.
+    count
+        Largest number of shapes.
+    """
     if scene.period is not None and scene.interpolable:
-        # Phase 0 is left out, as it is phase 1 again and would lie hidden below it.
+        # Phase 0 is left out, since it coincides with phase 1.
         return scene.end - scene.period * np.linspace(0, 1, count, endpoint=False)[::-1]
     return curve_times(scene, *scene.shown, count)
 
@@ -84,7 +99,7 @@ def _draw_space(figure: Figure, scene: Scene, times: Floats) -> None:
 
 
 def _draw_colour_key(figure: Figure, scene: Scene, times: Floats) -> None:
-    """Say what the colours of the shapes mean, and what of the run they show."""
+    """Draw the colour bar of the shapes, with a note on sparse samples."""
     phased = scene.period is not None and scene.interpolable
     span = Normalize(0, 1) if phased else Normalize(times[0], times[-1])
     colours: Any = ScalarMappable(span, ListedColormap(style.shape_colours(len(times))))

@@ -1,4 +1,4 @@
-"""The quantities that are drawn against time: labels, lines, samples, and what lies between."""
+"""Quantities drawn over time: labels, lines, samples and interpolation."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from undula.views.run.scene import Floats, Scene
 
 @dataclass(frozen=True)
 class Curve:
-    """One line of a row: its name, its look, its stored samples, and its value at any times."""
+    """A line of a row: name, look, stored samples and a function for values at any times."""
 
     name: str
     colour: str
@@ -22,14 +22,14 @@ class Curve:
 
 @dataclass(frozen=True)
 class Row:
-    """One quantity: the label of its axis, and its curves."""
+    """A quantity: label of its axis, and its curves."""
 
     label: str
     curves: tuple[Curve, ...]
 
 
 def tip_row(scene: Scene) -> Row:
-    """Give the row of the tip's three coordinates."""
+    """Return the row of the tip's three coordinates."""
     looks = (
         (r"$x$", style.X_COLOUR, "-"),
         (r"$y$", style.Y_COLOUR, "--"),
@@ -47,13 +47,13 @@ def tip_row(scene: Scene) -> Row:
 
 
 def energy_row(scene: Scene) -> Row:
-    """Give the row of the bending energy."""
+    """Return the row of the bending energy."""
     energy = Curve("", style.ENERGY_COLOUR, scene.energy, _between(scene, scene.energy))
     return Row(style.energy_label(scene.units), (energy,))
 
 
 def power_row(scene: Scene) -> Row:
-    """Give the row of active power and dissipation, dotted on top as they often coincide."""
+    """Return the row of active power and, as both often coincide, of dotted dissipation."""
     active = _between(scene, scene.active)
     lost = _between(scene, scene.dissipation)
     return Row(

@@ -1,4 +1,4 @@
-"""From a stored run to a scene: checks, and the time scales on which the motion can be drawn."""
+"""Scenes of stored runs: checks, and the time scales on which the motion can be drawn."""
 
 import json
 from collections.abc import Mapping
@@ -10,29 +10,30 @@ from undula.errors import InputError
 from undula.views.common import style
 from undula.views.run.scene import Floats, Scene, turning_points
 
+#: Variables of a stored run that figures need.
 NEEDED = ("nodes", "bending_energy", "active_power", "dissipation", "rotation_angle")
 _CLOSE = "close_"
 
 
 def read_scene(run: xr.Dataset) -> Scene:
-    """Take from a run what the views draw.
+    """Return the scene of a stored run.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A stored run: dims time, node, axis; the variables in `NEEDED`; attribute "summary". If it
-        has them once more as "close_nodes" and so on, with the dim close_time, they show its last
-        part more finely.
+        A stored run with dims time, node and axis, the variables in `NEEDED` and the attribute
+        "summary". Variables such as "close_nodes" with the dim close_time show its last part at
+        finer intervals.
 
     Returns
     -------
     Scene
-        The same run, checked.
+        The checked run.
 
     Raises
     ------
     InputError
-        If a variable or the summary is missing, or there are fewer than two samples.
+        A variable or the summary is missing, or the run has fewer than two samples.
     """
     missing = [name for name in NEEDED if name not in run]
     if missing or "summary" not in run.attrs:
@@ -48,13 +49,13 @@ def read_scene(run: xr.Dataset) -> Scene:
 
 
 def units_of(summary: Mapping[str, object]) -> style.UnitNames:
-    """Return the names of a run's units; without any it is that of a filament."""
+    """Return the names of a run's units; those of a filament if the summary has none."""
     named = summary.get("units")
     return named if isinstance(named, Mapping) else style.FILAMENT
 
 
 def _close_up(run: xr.Dataset, summary: Mapping[str, object], duration: float) -> Scene | None:
-    """Take the close-up of a run; a run that ends at rest is told by the whole of it alone."""
+    """Return the close-up of a run; None without one, and for a run that ends at rest."""
     stored = run.sizes.get(f"{_CLOSE}time", 0) >= 2
     if not stored or str(summary.get("verdict", "")).startswith("straight"):
         return None
@@ -68,7 +69,7 @@ def _scene(
     duration: float,
     close: Scene | None,
 ) -> Scene:
-    """Take the variables with a prefix from a run that goes on for `duration` in all."""
+    """Return the scene of the variables with a prefix, of a run of total length `duration` [T]."""
     times = _floats(run[f"{prefix}time"])
     nodes = _floats(run[f"{prefix}nodes"].transpose(f"{prefix}time", "node", "axis"))
     verdict, frequency = str(summary.get("verdict", "")), _rate(summary.get("frequency"))
@@ -107,27 +108,27 @@ def _rate(value: object) -> float | None:
 
 
 def _period(verdict: str, frequency: float | None, duration: float) -> float | None:
-    """Period of a motion that lasts; a decaying one has a rate but does not come back."""
+    """Return the period of a lasting motion; a decaying one has a rate but does not recur."""
     if frequency is None or verdict.startswith("straight") or frequency * duration < 1:
         return None
     return 1 / frequency
 
 
 def _smoothing_turn(tip: Floats, angle: Floats) -> Floats:
-    """Angle by which to turn the motion back so that it changes least between samples."""
+    """Return the angle of the frame in which the motion changes least between samples."""
     plane = tip[:, 0] + 1j * tip[:, 1]
     if len(tip) < 4 or not np.all(np.isfinite(angle)):
         return np.zeros(len(tip))
     laboratory = np.abs(np.diff(plane, 2)).mean()
     turned = np.abs(np.diff(plane * np.exp(-1j * angle), 2)).mean()
-    # The allowance prefers the stored angle where samples fall once a turn and hide the rotation.
+    # The allowance prefers the stored angle where one sample per turn hides the rotation.
     return angle if turned <= laboratory + 1e-6 else np.zeros(len(tip))
 
 
 def _cycle(
     tip: Floats, turn: Floats, times: Floats, period: float | None, shape_rate: float | None
 ) -> float | None:
-    """Time of one swing in the frame that turns by `turn`, by the summary or by counting."""
+    """Return the time of one swing in the frame of `turn`, from the summary or by counting."""
     turns = abs(turn[-1] - turn[0]) > 1
     if period is not None:
         rate = shape_rate if turns else 1 / period

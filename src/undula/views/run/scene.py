@@ -1,4 +1,4 @@
-"""What a run has to show: its arrays, its verdict, its time scales, and the spans to draw."""
+"""Scene of a run: its arrays, verdict and time scales, and the intervals to be drawn."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,14 +8,15 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+#: Number of periods in the close view of a run.
 PERIODS_IN_FOCUS = 4
-# Below this many samples a cycle, curves drawn between the samples would be invented.
+#: Least number of samples in a cycle for interpolation.
 SAMPLES_PER_CYCLE = 8.0
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A run as the views see it, in the units of `undula.models`.
+    """A run in the form that figures use, in the units of `undula.models`.
 
     Attributes
     ----------
@@ -24,24 +25,24 @@ class Scene:
     nodes : ndarray of shape (m, n, 3)
         Positions of the nodes, base first [L].
     turn : ndarray of shape (m,)
-        Angle of the frame in which the motion is slowest between samples [rad]: the stored
-        rotation angle, or zero where turning the motion back would only roughen it.
+        Angle of the frame in which the motion changes least between samples [rad]: the stored
+        rotation angle, or zero where a turning frame has no advantage.
     energy, active, dissipation : ndarray of shape (m,)
-        Bending energy; active power and dissipation, both energy per T.
+        Bending energy; active power and dissipation [energy per T].
     units : mapping of str to str
-        Names of the units of its numbers by quantity.
+        Names of the units by quantity.
     load, verdict : str
-        The words of the run's summary.
+        Load and verdict in words.
     frequency : float or None
-        Rate of the whole motion [cycles per T], positive, if there is one.
+        Frequency of the whole motion [cycles per T], positive; None without one.
     period : float or None
-        Time [T] after which the motion repeats; None if it does not, or the run is shorter.
+        Period of the motion [T]; None without one, and if the run is shorter.
     cycle : float or None
-        Shortest time [T] in which the motion swings to and fro in the frame of `turn`.
+        Shortest time of a swing in the frame of `turn` [T]; None without swings.
     settled_from : float or None
-        Time [T] from which the motion counts as settled.
+        Time from which the motion is settled [T]; None without one.
     close : Scene or None
-        The last part of the run once more, at finer intervals, if it has been stored.
+        The last part of the run at finer intervals; None if it is not stored.
     """
 
     times: Floats
@@ -61,7 +62,7 @@ class Scene:
 
     @property
     def detail(self) -> "Scene":
-        """What shows single periods: the close-up of the run if there is one, or the run itself."""
+        """The scene that resolves single periods: the close-up, or the run itself without one."""
         return self.close or self
 
     @property
@@ -81,25 +82,25 @@ class Scene:
 
     @property
     def samples_per_cycle(self) -> float:
-        """Stored samples in one swing of the motion; infinite if it does not swing."""
+        """Number of stored samples in one swing; infinite for a motion without swings."""
         spacing = self.duration / (len(self.times) - 1)
         return np.inf if self.cycle is None else self.cycle / spacing
 
     @property
     def interpolable(self) -> bool:
-        """Whether the samples are dense enough to draw the motion between them."""
+        """True if the samples are dense enough for interpolation."""
         return self.samples_per_cycle >= SAMPLES_PER_CYCLE
 
     @property
     def swings(self) -> float:
-        """Number of cycles that the whole run goes through, as seen in the laboratory."""
+        """Number of cycles of the whole run in the laboratory frame."""
         if self.close is not None:
             return self.close.swings * self.duration / self.close.duration
         return max(turning_points(self.nodes[:, -1, k]) for k in (0, 1)) / 2
 
     @property
     def shown(self) -> tuple[float, float]:
-        """The part of the run [T, T] whose shapes tell most: last period, last part, or all."""
+        """The interval [T, T] whose shapes are drawn: last period, last part, or the whole run."""
         if self.period is not None:
             return self.end - self.period, self.end
         if self.focus is None or self.verdict.startswith("straight"):
@@ -108,14 +109,14 @@ class Scene:
 
     @property
     def settled(self) -> tuple[float, float] | None:
-        """The settled part of the run [T, T], if there is one."""
+        """The settled interval [T, T], None without one."""
         if self.settled_from is None or self.settled_from >= self.end:
             return None
         return max(self.settled_from, self.start), self.end
 
     @property
     def focus(self) -> tuple[float, float] | None:
-        """The last few cycles [T, T], if they are a small part of the run."""
+        """The interval of the last few cycles [T, T]; None if they are most of the run."""
         if self.period is not None:
             length = PERIODS_IN_FOCUS * self.period
         else:
@@ -126,7 +127,15 @@ class Scene:
 
 
 def turning_points(values: Floats, least: float = 1e-3) -> int:
-    """Count the times at which a quantity turns back, movements smaller than `least` left out."""
+    """Return the number of turning points of a quantity, ignoring changes below `least`.
+
+    Parameters
+    ----------
+    values
+        Values in the order of time.
+    least
+        Smallest change that counts.
+    """
     moves = np.diff(np.round(values / least))
     moves = moves[moves != 0]
     return int(np.count_nonzero(moves[1:] * moves[:-1] < 0))

@@ -1,4 +1,4 @@
-"""The filament in space: equal axes, shapes, and their shadow on the plane of the clamp."""
+"""Filament in space: axes of equal scale, shapes, and their shadow on the ground."""
 
 from typing import Any
 
@@ -15,22 +15,22 @@ _LEAST_HALF_WIDTH = 0.3
 
 
 def space_axes(figure: Figure, place: tuple[float, float, float, float], points: Floats) -> Any:
-    """Add three-dimensional axes that hold all the given points at one scale.
+    """Add three-dimensional axes of equal scale that contain all given points.
 
     Parameters
     ----------
     figure : Figure
-        Where to add them.
+        The figure.
     place : tuple of 4 floats
-        Left, bottom, width and height in parts of the figure, to be filled up to the numbers
-        and names of the axes, which stand a little outside.
+        Left, bottom, width and height in fractions of the figure; numbers and names of the axes
+        lie slightly outside.
     points : ndarray of shape (..., 3)
-        Everything that is to be seen [L].
+        Points that have to be visible [L].
 
     Returns
     -------
     Axes3D
-        With the ground drawn; the ground is z = 0, or the lowest point if that is below.
+        The axes, with the ground drawn at z = 0 or at the lowest point, if it is below.
     """
     axes: Any = figure.add_axes((0, 0, 1, 1), projection="3d", computed_zorder=False)
     half = max(_LEAST_HALF_WIDTH, 1.08 * float(np.abs(points[..., :2]).max()))
@@ -49,14 +49,21 @@ def space_axes(figure: Figure, place: tuple[float, float, float, float], points:
 
 
 def ground(axes: Any) -> float:
-    """Tell the height [L] of the plane that carries the shadows."""
+    """Return the height of the ground [L], which carries the shadows."""
     return float(axes.get_zlim()[0])
 
 
 def draw_shapes(axes: Any, shapes: Floats) -> None:
-    """Draw shapes (k, n, 3) in order of time, the last one bold, each with its shadow.
+    """Draw shapes (k, n, 3) in the order of time, the last one bold, each with its shadow.
 
-    Each shape is one line with the group identity "shape", each shadow one with "shadow".
+    The group identity of each shape is "shape", that of each shadow "shadow".
+
+    Parameters
+    ----------
+    axes
+        Axes of `space_axes`.
+    shapes
+        Shapes in the order of time [L], shape (k, n, 3).
     """
     floor = ground(axes)
     shadow = {"color": style.SHADOW, "lw": 0.8, "alpha": 0.55, "zorder": 2, "gid": "shadow"}
@@ -73,29 +80,48 @@ def draw_shapes(axes: Any, shapes: Floats) -> None:
 
 
 def draw_tip_path(axes: Any, path: Floats, *, joined: bool) -> None:
-    """Draw the path of the tip (k, 3) and its shadow, as lines or as points."""
+    """Draw the path of the tip (k, 3) and its shadow, as lines or as points.
+
+    Parameters
+    ----------
+    axes
+        Axes of `space_axes`.
+    path
+        Positions [L], shape (k, 3).
+    joined
+        If true, the path is a line, else points.
+    """
     look = "-" if joined else "."
     axes.plot(path[:, 0], path[:, 1], ground(axes), look, color=style.QUIET, lw=0.9, ms=3, zorder=3)
     axes.plot(*path.T, look, color=style.Y_COLOUR, lw=1.0, ms=4, zorder=4, gid="tip path")
 
 
 def fading_trail(axes: Any, pieces: int) -> Any:
-    """Add an empty trail of line pieces, the oldest all but transparent."""
+    """Add an empty trail of line segments, the oldest ones nearly transparent.
+
+    Parameters
+    ----------
+    axes
+        Axes of `space_axes`.
+    pieces
+        Number of segments.
+    """
     colours = np.tile(np.array([0.835, 0.369, 0.0, 1.0]), (pieces, 1))
     colours[:, 3] = np.linspace(0.03, 0.95, pieces)
-    nothing = np.zeros((pieces, 2, 3))
-    trail = Line3DCollection(nothing, colors=colours, linewidths=1.8, zorder=4)
+    empty = np.zeros((pieces, 2, 3))
+    trail = Line3DCollection(empty, colors=colours, linewidths=1.8, zorder=4)
     return axes.add_collection3d(trail, autolim=False)
 
 
 def _fit(axes: Any, place: tuple[float, float, float, float], points: Floats) -> None:
-    """Scale and move the axes so that the points as seen just fill the place."""
+    """Scale and move the axes so that the projected points just fill the place."""
     figure, zoom = axes.figure, 1.0
     left, bottom, width, height = place
     shape = figure.get_figheight() / figure.get_figwidth()
     spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
     axes.set_position((0.0, 0.0, shape, 1.0))
-    # Perspective makes size not quite proportional to zoom: three rounds leave less than a pixel.
+    # With perspective the size is not proportional to the zoom; after three iterations the error is
+    # below a pixel.
     for _ in range(3):
         axes.set_box_aspect(spans, zoom=zoom)
         low, high = _seen(axes, points)
@@ -105,7 +131,7 @@ def _fit(axes: Any, place: tuple[float, float, float, float], points: Floats) ->
 
 
 def _seen(axes: Any, points: Floats) -> tuple[Floats, Floats]:
-    """Give the lower left and upper right corner of points as seen, in parts of the figure."""
+    """Return lower left and upper right corner of projected points in fractions of the figure."""
     flat = proj3d.proj_transform(*points.T, axes.get_proj())[:2]
     to_figure = axes.transData - axes.figure.transFigure
     seen = to_figure.transform(np.column_stack(flat))
@@ -113,14 +139,14 @@ def _seen(axes: Any, points: Floats) -> tuple[Floats, Floats]:
 
 
 def _clean(axes: Any, half: float) -> None:
-    """Leave three thin axes with few marks, no panes and no grid."""
+    """Reduce the axes to three thin lines with few ticks, without panes and grid."""
     axes.grid(visible=False)
     axes.patch.set_alpha(0.0)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.pane.set_visible(False)
         axis.line.set_color(style.SHADOW)
         axis.set_tick_params(pad=-1, labelsize=7.5)
-    # Marks well inside the edges: at the corner the numbers of two axes would meet.
+    # The ticks lie well inside, since the numbers of two axes would overlap at a corner.
     mark = float(f"{0.65 * half:.0e}")
     axes.set_xticks([-mark, 0, mark])
     axes.set_yticks([-mark, 0, mark])

@@ -1,4 +1,4 @@
-"""Quantities against time: the whole run on the left, its last few periods on the right."""
+"""Quantities over time: the whole run on the left, its last few periods on the right."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -13,22 +13,24 @@ from undula.views.run.quantities import Curve, Row
 from undula.views.run.resample import curve_times
 from undula.views.run.scene import PERIODS_IN_FOCUS, Floats, Scene, turning_points
 
-# Samples in a span of a band where there are too few a cycle to draw them as a line.
+# Number of samples in each span of a band of sparse samples.
 _SPARSE_SPAN = 300
+# Margin before the first time, as a fraction of the run.
 _AT_START = 0.012
-# With fewer spans a band would be a few blocks: the samples themselves tell more.
+# Least number of spans of a band; with fewer spans the samples themselves are drawn.
 _FEWEST_SPANS = 12
+# Largest number of cycles drawn as a line, number of spans of a band, and numbers of points.
 _CYCLES_AS_LINES = 25
 _BANDS = 150
 _POINTS = 800
 _POINTS_PER_CYCLE = 48
 _MARK_SAMPLES_BELOW = 60
-# A quantity that changes by less than this part of itself is drawn as constant, beside the way to
-# its value: finer marks would be those of round-off.
+# Relative change below which a quantity is constant: its axis then shows the approach to the value,
+# since a finer scale would resolve round-off.
 _CONSTANT = 1e-3
-# What has decayed to less than this part of its greatest value has none of its own to be seen.
+# Ratio to the greatest value below which a decayed quantity counts as zero.
 _NOTHING = 1e-6
-# A beginning that makes an axis longer by no more than this part of it is shown whole.
+# Largest relative extension of an axis to show the whole beginning of a curve.
 _STRETCH = 0.5
 
 
@@ -40,23 +42,23 @@ def draw_traces(
     right: float,
     top: float,
 ) -> list[list[Axes]]:
-    """Draw rows of quantities against a shared time.
+    """Draw rows of quantities over a common time axis.
 
     Parameters
     ----------
     figure : Figure
-        Where to draw them.
+        The figure.
     scene : Scene
         The run.
     rows : sequence of callable
-        What gives each row, from top to bottom, at least two.
+        Functions that return the rows, from top to bottom, at least two.
     left, right, top : float
-        Edges of the block in parts of the figure.
+        Edges of the panels in fractions of the figure.
 
     Returns
     -------
     list of lists of Axes
-        Per row its axes: the whole run, and the last few cycles where they would not be seen.
+        Axes of each row: of the whole run, and of the last few cycles if they need their own.
     """
     focus = scene.focus
     columns = 1 if focus is None else 2
@@ -83,14 +85,14 @@ def draw_traces(
 
 
 def band(times: Floats, values: Floats, cycles: float) -> tuple[Floats, Floats, Floats]:
-    """Give the lowest and highest value in each of many spans of at least one cycle.
+    """Return the lowest and highest value in spans of at least one cycle.
 
     Parameters
     ----------
     times, values : ndarrays of shape (m,)
-        A curve with too many cycles to be drawn as a line.
+        A curve with too many cycles for a line.
     cycles : float
-        Number of cycles in it.
+        Number of cycles of the curve.
 
     Returns
     -------
@@ -110,7 +112,7 @@ def _focus_name(scene: Scene, focus: tuple[float, float]) -> str:
 
 
 def _draw_row(scene: Scene, row: Row, near: Row, line: list[Axes]) -> None:
-    """Draw a row of the whole run, and beside it what is near in time."""
+    """Draw a row of the whole run, and next to it the last cycles."""
     whole = line[0]
     whole.set_ylabel(row.label)
     _shade(scene, whole)
@@ -122,7 +124,7 @@ def _draw_row(scene: Scene, row: Row, near: Row, line: list[Axes]) -> None:
             _draw_samples(whole, scene, curve)
         else:
             _draw_line(whole, scene, curve, (scene.start, scene.end))
-    # What begins at once would lie on the axis itself.
+    # The margin keeps a sudden beginning off the axis.
     whole.set_xlim(scene.start - _AT_START * scene.duration, scene.end)
     if len(line) == 2 and scene.focus is not None:
         for curve in near.curves:
@@ -145,7 +147,7 @@ def _draw_line(axes: Axes, scene: Scene, curve: Curve, window: tuple[float, floa
 
 
 def _cycles(scene: Scene, values: Floats) -> float:
-    """Count the cycles of a curve; one that turns back often in a period has one cycle in it."""
+    """Return the number of cycles of a curve, at most one in each period of the motion."""
     least = 1e-3 * max(float(np.ptp(values)), 1e-3 * float(np.abs(values).max()), 1e-12)
     turns = turning_points(values, least) / 2
     return turns if scene.period is None else min(turns, scene.duration / scene.period)
@@ -157,8 +159,8 @@ def _draw_band(axes: Axes, scene: Scene, curve: Curve, cycles: float) -> None:
 
 
 def _draw_samples(axes: Axes, scene: Scene, curve: Curve) -> None:
-    """Draw a curve of too few samples a cycle: between what bounds it lies, or its samples."""
-    # A span needs many samples to come near the extremes: few a cycle beat with the cycles.
+    """Draw a curve with sparse samples: as a band of its bounds, or as single samples."""
+    # A span needs many samples to contain the extremes, since sparse samples beat with the cycles.
     spans = len(scene.times) / _SPARSE_SPAN
     if spans >= _FEWEST_SPANS:
         _fill(axes, curve, *band(scene.times, curve.samples, spans))
@@ -174,7 +176,7 @@ def _fill(axes: Axes, curve: Curve, times: Floats, low: Floats, high: Floats) ->
 
 
 def _shade(scene: Scene, axes: Axes) -> None:
-    """Mark the settled part of the run, and within it the part that the other column shows."""
+    """Shade the settled part of the run, and the part that the other column shows."""
     if scene.settled is not None:
         axes.axvspan(*scene.settled, color=style.SETTLED, lw=0)
     if scene.focus is not None:
@@ -182,7 +184,7 @@ def _shade(scene: Scene, axes: Axes) -> None:
 
 
 def _scale(line: list[Axes], curves: Sequence[Curve]) -> None:
-    """Give both columns one scale, which a short spike at the start does not decide."""
+    """Set the same scale in both columns, independent of a short spike at the start."""
     low, high = limits([curve.samples for curve in curves])
     for axes in line:
         axes.set_ylim(low, high)
@@ -193,11 +195,11 @@ def _scale(line: list[Axes], curves: Sequence[Curve]) -> None:
 
 
 def limits(curves: Sequence[Floats]) -> tuple[float, float]:
-    """Return the limits of an axis for some curves, each (m,), in the course of time.
+    """Return the limits of an axis for curves, each of shape (m,) in the order of time.
 
-    They hold the second half of each curve and nearly all of the first; the rest, too, where that
-    takes little more room. Where that is constant but for round-off, they hold the way to it as
-    well, as far as it is no spike.
+    The limits contain the second half of each curve and nearly all of its first half; the rest is
+    included if it needs little more room. If the second half is constant up to round-off, they
+    contain the approach to it as well, except for a spike.
     """
     bounds = np.array([_bounds(values) for values in curves])
     low, high = float(bounds[:, 0].min()), float(bounds[:, 1].max())

@@ -1,4 +1,4 @@
-"""A video file that appears whole or not at all."""
+"""Writing of video files, which appear whole or not at all."""
 
 import os
 import secrets
@@ -10,23 +10,23 @@ import imageio_ffmpeg
 
 from undula.errors import InputError
 
-# Colour at half resolution (yuv420p), which every player knows; near-lossless to the eye; the index
-# in front, so that the film plays while it loads.
+# Colour at half resolution (yuv420p), which every player supports; visually nearly lossless; with
+# the index in front, so that the movie plays while it loads.
 _ENCODING = [
     *("-c:v", "libx264", "-pix_fmt", "yuv420p"),
     *("-preset", "veryfast", "-crf", "20", "-movflags", "+faststart"),
-    # The mark by which the file is known for one of ours.
+    # The mark of undula, see `undula.storage.marks`.
     *("-metadata", "comment=undula"),
 ]
 
 
 def check_video_path(path: Path) -> None:
-    """Refuse a path at which no MP4 file can be written.
+    """Refuse a path to which no MP4 file can be written.
 
     Raises
     ------
     InputError
-        If the name does not end in .mp4, or its folder is missing or closed to writing.
+        The name does not end in .mp4, or the folder is missing or cannot be written.
     """
     if path.suffix.lower() != ".mp4":
         raise InputError(f"movie path {str(path)!r}: give a name that ends in .mp4")
@@ -45,9 +45,9 @@ def write_video(path: Path, images: Iterable[memoryview], size: tuple[int, int],
     Parameters
     ----------
     path : Path
-        The file to make or replace; it is touched only once the video is complete.
+        The file, which is written or replaced when the video is complete.
     images : iterable of memoryview
-        Each of height by width by 4 bytes: red, green, blue, opacity.
+        Images of height by width by 4 bytes: red, green, blue, opacity.
     size : tuple of int
         Width and height in pixels, both even.
     fps : int
@@ -56,14 +56,13 @@ def write_video(path: Path, images: Iterable[memoryview], size: tuple[int, int],
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        The folder cannot be written.
     OSError
-        If the encoder fails, or the disk is full. Then, as on any other exception, no file is
-        left behind.
+        The encoder fails, or the disk is full. As after any other exception, no file is left.
     """
     check_video_path(path)
     partial = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.part.mp4")
-    # Refused where there is anything, a link too: nobody can have the encoder write elsewhere.
+    # O_EXCL refuses existing names, links included, so that no link diverts the encoder.
     os.close(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     try:
         _encode(partial, images, size, fps)
@@ -74,22 +73,22 @@ def write_video(path: Path, images: Iterable[memoryview], size: tuple[int, int],
 
 
 def _encode(path: Path, images: Iterable[memoryview], size: tuple[int, int], fps: int) -> None:
-    # A process of our own, as its exit status tells of a disk that filled up at the very end.
+    # The exit status of the process reports even a disk that is full at the very end.
     with Popen(_command(path, size, fps), stdin=PIPE, stdout=DEVNULL, stderr=PIPE) as encoder:
         try:
             _send(encoder, images)
-            _, complaint = encoder.communicate()
+            _, errors = encoder.communicate()
         except BaseException:
             encoder.kill()
             encoder.communicate()
             raise
     if encoder.returncode != 0:
-        said = complaint.decode(errors="replace").strip() or "it gave no reason"
-        raise OSError(f"the video encoder failed: {said}")
+        reason = errors.decode(errors="replace").strip() or "it gave no reason"
+        raise OSError(f"the video encoder failed: {reason}")
 
 
 def _send(encoder: Popen[bytes], images: Iterable[memoryview]) -> None:
-    """Feed the images; an encoder that has gone is left to its exit status."""
+    """Send the images; a failed encoder reports by its exit status."""
     if encoder.stdin is None:
         return
     for image in images:

@@ -1,4 +1,4 @@
-"""How motions wind about the axis: shapes, angle and height of the tip, one motion beside another.
+"""Winding of motions about the axis: shapes, and angle and height of the tip, side by side.
 
 After the last figure of Ling, Guo & Kanso (2018).
 """
@@ -17,25 +17,35 @@ from undula.views.run.space import draw_shapes, space_axes
 
 _LEFT, _COLUMN, _RIGHT, _HEIGHT = 0.5, 3.1, 0.25, 6.4
 _SHAPES = 24
-# What is drawn of a column, from below, in parts of the figure: height, angle, shapes.
+# Bottom and height of the panels of a column in fractions of the figure: height, angle, shapes.
 _LOWER, _MIDDLE, _UPPER = (0.085, 0.17), (0.315, 0.17), (0.53, 0.40)
 
 
 @dataclass(frozen=True)
 class TipAngleSeries:
-    """A motion to be drawn.
+    """A motion in the figure of winding.
 
     Attributes
     ----------
     title : str
-        Above its column.
+        Title of its column.
     time : ndarray, shape (m,)
         Instants [T], rising.
     nodes : ndarray, shape (m, N + 1, 3)
-        Positions of the nodes [L], finely enough sampled that the tip goes round by less than half
-        a turn from one instant to the next.
+        Positions of the nodes [L]; the tip turns by less than half a turn between instants.
     shown : float
-        The shapes drawn are those of the last part of the motion, of this length [T].
+        Length of the last part of the motion whose shapes are drawn [T].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from undula.views import TipAngleSeries
+    >>> time = np.linspace(0.0, 1.0, 50)
+    >>> angle = 2.0 * np.pi * time[:, None] * np.ones(5)
+    >>> s = np.linspace(0.0, 1.0, 5)
+    >>> x, y, z = 0.5 * s * np.cos(angle), 0.5 * s * np.sin(angle), 0.8 * s + 0.0 * angle
+    >>> nodes = np.stack([x, y, z], axis=-1)
+    >>> motion = TipAngleSeries("one turn", time, nodes, shown=0.5)
     """
 
     title: str
@@ -45,22 +55,33 @@ class TipAngleSeries:
 
 
 def winding_figure(motions: Sequence[TipAngleSeries]) -> Figure:
-    """Draw motions side by side: shapes of the last part, angle of the tip about z, its height.
+    """Draw motions side by side: shapes of the last part, angle of the tip about z, and its height.
 
     Parameters
     ----------
-    motions : sequence of Winding
-        At least one.
+    motions : sequence of TipAngleSeries
+        At least one motion.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Not known to pyplot. The part that the shapes are from is shaded.
+        Not registered with pyplot. The interval of the shapes is shaded.
 
     Raises
     ------
     InputError
-        There is nothing to draw.
+        No motion is given.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from undula.views import TipAngleSeries, winding_figure
+    >>> time = np.linspace(0.0, 1.0, 50)
+    >>> angle = 2.0 * np.pi * time[:, None] * np.ones(5)
+    >>> s = np.linspace(0.0, 1.0, 5)
+    >>> x, y, z = 0.5 * s * np.cos(angle), 0.5 * s * np.sin(angle), 0.8 * s + 0.0 * angle
+    >>> nodes = np.stack([x, y, z], axis=-1)
+    >>> figure = winding_figure([TipAngleSeries("one turn", time, nodes, shown=0.5)])
     """
     if not motions:
         raise InputError("there are no motions to be drawn; give at least one")
@@ -78,9 +99,9 @@ def _draw_column(
     figure.text(left + 0.5 * width, 0.965, motion.title, ha="center", fontsize=10.5)
     start = motion.time[-1] - motion.shown
     late = np.flatnonzero(motion.time >= start)
-    picked = late[np.linspace(0, len(late) - 1, min(_SHAPES, len(late))).astype(int)]
+    selected = late[np.linspace(0, len(late) - 1, min(_SHAPES, len(late))).astype(int)]
     space = space_axes(figure, (left, _UPPER[0], 0.96 * width, _UPPER[1]), motion.nodes[late])
-    draw_shapes(space, motion.nodes[picked])
+    draw_shapes(space, motion.nodes[selected])
     tip = motion.nodes[:, -1]
     angle = np.unwrap(np.arctan2(tip[:, 1], tip[:, 0]))
     rows = (

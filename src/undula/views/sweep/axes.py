@@ -1,4 +1,4 @@
-"""The axes of a diagram: scales, room for its points, and solved borders as lines with names."""
+"""Axes of a diagram: scales, margins, and stability boundaries as named lines."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -18,11 +18,11 @@ from undula.views.common import style
 from undula.views.common.legends import fitting_legend
 from undula.views.sweep.points import axis_label, units_of
 
-#: A border: its name, the values of the parameter, and the forces, NaN where there is none. A
-#: single value of NaN is a border at one force, whatever the parameter.
+#: A stability boundary: its name, values of the parameter, and forces, NaN without a boundary. A
+#: single value NaN stands for a boundary at one force for all values.
 Border = tuple[str, Array, Array]
 
-#: Dashes of lines, in the order of the borders.
+#: Dashes of the boundaries by name.
 DASHES: Mapping[str, Any] = {
     "onset": "solid",
     "spinning-lost": (0, (6, 2)),
@@ -32,11 +32,11 @@ DASHES: Mapping[str, Any] = {
     "flapping-fold": (0, (1, 3)),
 }
 _OTHER_DASHES = (0, (3, 1.5))
-# From this ratio of the largest to the least value on, even steps of the logarithm count as such.
+# Least ratio of largest to least value for a logarithmic scale.
 _DECADE = 10.0
-# Up to so many decades a logarithmic axis has these numbers times powers of ten.
+# Numbers on a logarithmic axis, times powers of ten, by its largest number of decades.
 _NUMBERS = ((1.3, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)), (4.0, (1.0, 2.0, 5.0)), (np.inf, (1.0,)))
-# Legends end here, in parts of the figure.
+# Right end of legends in fractions of the figure.
 _INSIDE = 0.985
 
 
@@ -46,14 +46,26 @@ def scale_of(values: Array) -> str:
     if rising.size < 3 or rising[0] <= 0.0 or rising[-1] < _DECADE * rising[0]:
         return "linear"
     steps, ratios = np.diff(rising), np.diff(np.log(rising))
-    even, even_logs = (np.std(some) / np.mean(some) for some in (steps, ratios))
+    even, even_logs = (np.std(gaps) / np.mean(gaps) for gaps in (steps, ratios))
     return "log" if even_logs < even else "linear"
 
 
 def diagram_on(
     figure: Figure, store: xr.Dataset, names: tuple[str, str], place: Sequence[float]
 ) -> Axes:
-    """Add axes of two of a dataset's coordinates: scaled, labelled, with room around the points."""
+    """Add axes of two coordinates of a dataset, with scales, labels and margins.
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    store
+        The dataset.
+    names
+        Names of the horizontal and the vertical coordinate.
+    place
+        Left, bottom, width and height in fractions of the figure.
+    """
     axes = figure.add_axes((place[0], place[1], place[2], place[3]))
     units = units_of(store)
     for which, name in zip("xy", names, strict=True):
@@ -63,7 +75,17 @@ def diagram_on(
 
 
 def set_scale(axes: Axes, which: str, values: Array) -> None:
-    """Set scale and limits of the x or the y axis to hold values with half a step around."""
+    """Set scale and limits of the x or y axis to contain values with half a step around.
+
+    Parameters
+    ----------
+    axes
+        The axes.
+    which
+        "x" or "y".
+    values
+        Values on the axis.
+    """
     scale = scale_of(values)
     getattr(axes, f"set_{which}scale")(scale)
     logs = scale == "log"
@@ -71,7 +93,7 @@ def set_scale(axes: Axes, which: str, values: Array) -> None:
     if places.size == 1:
         margin = max(0.1 * abs(float(places[0])), 0.1)
     else:
-        # Half a step, but room for a symbol where steps are of very different lengths.
+        # Half a step, and at least the room for a symbol where steps differ much.
         margin = max(0.5 * float(np.diff(places).min()), 0.05 * float(np.ptp(places)))
     ends = np.array([places[0] - margin, places[-1] + margin])
     getattr(axes, f"set_{which}lim")(*(np.exp(ends) if logs else ends))
@@ -80,7 +102,15 @@ def set_scale(axes: Axes, which: str, values: Array) -> None:
 
 
 def plain_numbers(axis: Axis, ends: Array) -> None:
-    """Mark a logarithmic axis between two ends with plain numbers, more of them if it is short."""
+    """Put plain numbers on a logarithmic axis between two ends, more for a short axis.
+
+    Parameters
+    ----------
+    axis
+        The axis.
+    ends
+        Both ends of the axis.
+    """
     decades = np.log10(ends[1] / ends[0])
     subs = next(subs for most, subs in _NUMBERS if decades <= most)
     axis.set_major_locator(LogLocator(subs=subs))
@@ -89,9 +119,19 @@ def plain_numbers(axis: Axis, ends: Array) -> None:
 
 
 def steps_in_points(axes: Axes, store: xr.Dataset, names: tuple[str, str]) -> tuple[float, float]:
-    """Return how far apart neighbouring points are, to the right and upwards [points of type]."""
+    """Return the distance of neighbouring points, to the right and upwards [points of type].
+
+    Parameters
+    ----------
+    axes
+        The axes.
+    store
+        The dataset.
+    names
+        Names of the horizontal and the vertical coordinate.
+    """
     box = axes.get_window_extent()
-    # The unit of the box are dots.
+    # The box is in dots.
     rooms = 72.0 / axes.figure.dpi * np.array([box.width, box.height])
     steps = []
     for name, which, room in zip(names, "xy", rooms, strict=True):
@@ -104,18 +144,25 @@ def steps_in_points(axes: Axes, store: xr.Dataset, names: tuple[str, str]) -> tu
     return steps[0], steps[1]
 
 
-def draw_borders(axes: Axes, borders: Sequence[Border]) -> list[Artist]:
-    """Draw borders into axes whose limits are set, and return what names them in a legend.
+def draw_borders(axes: Axes, boundaries: Sequence[Border]) -> list[Artist]:
+    """Draw boundaries into axes whose limits are set; return their legend handles.
 
-    A border without any force is left out.
+    A boundary without any force is left out.
+
+    Parameters
+    ----------
+    axes
+        The axes.
+    borders
+        The boundaries.
     """
     halo = [patheffects.withStroke(linewidth=3.4, foreground="white")]
     handles: list[Artist] = []
-    for name, values, forces in borders:
+    for name, values, forces in boundaries:
         if not np.any(np.isfinite(forces)):
             continue
         look: Any = {"color": style.INK, "lw": 1.5, "ls": DASHES.get(name, _OTHER_DASHES)}
-        # A value beside others without a force is a dot of its own.
+        # A force whose neighbours are missing is drawn as a short dash.
         if np.size(values) == 1 and not np.isfinite(values[0]):
             axes.axhline(float(forces[0]), zorder=4, gid=name, path_effects=halo, **look)
         else:
@@ -131,15 +178,15 @@ def draw_borders(axes: Axes, borders: Sequence[Border]) -> list[Artist]:
 def place_legend(
     figure: Figure, rows: Sequence[Sequence[Artist]], left: float, top: float
 ) -> float:
-    """Name things in rows of legends, and return how far down these reach.
+    """Add rows of legends; return their lower end in fractions of the figure.
 
     Parameters
     ----------
     figure : Figure
     rows : sequence of sequence of artist
-        Each begins a line of its own, and goes on in further ones if it is long.
+        Handles of each row; a long row is broken.
     left, top : float
-        The corner, in parts of the figure.
+        Upper left corner in fractions of the figure.
     """
     for handles in rows:
         if handles:
@@ -156,13 +203,13 @@ def place_legend(
 
 
 def _width_of(handle: Artist) -> float:
-    """Return how wide the samples of a legend are: lines need more room than symbols."""
+    """Return the width of handles in a legend, larger for lines than for symbols."""
     line = isinstance(handle, Line2D) and handle.get_linestyle() not in ("None", "none")
     return 2.4 if line else 1.3
 
 
 def _alone(heights: Array) -> Any:
-    """Tell which values have a force and neighbours without one."""
-    known = np.isfinite(heights)
-    padded = np.pad(known, 1)
-    return known & ~padded[:-2] & ~padded[2:]
+    """Return a mask of the finite values without finite neighbours."""
+    finite = np.isfinite(heights)
+    padded = np.pad(finite, 1)
+    return finite & ~padded[:-2] & ~padded[2:]

@@ -1,4 +1,4 @@
-"""Shares of starts that end in each verdict: pies over two axes, stacked bars over one."""
+"""Shares of starts with each verdict: pies over two axes, stacked bars over one axis."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -27,36 +27,43 @@ from undula.views.sweep.points import axis_label, laid_out, units_of
 
 _SIZE = (10.0, 7.0)
 _LEFT, _RIGHT, _BOTTOM = 0.085, 0.975, 0.085
-# What a pie fills of the way to its neighbours, and its greatest width [points]; the same of a bar.
+# Width of a pie or bar over the distance of its neighbours, and largest width of a pie [points].
 _FILLED, _WIDEST = 0.8, 40.0
-# Corners of the rim of a whole pie.
+# Number of corners of a whole pie.
 _CORNERS = 96
 
 
 def basin_diagram(
-    basins: xr.Dataset, borders: Sequence[Border] = (), *, title: str | None = None
+    basins: xr.Dataset, boundaries: Sequence[Border] = (), *, title: str | None = None
 ) -> Figure:
     """Draw the share of starts that end in each verdict.
 
     Parameters
     ----------
     basins : xarray.Dataset
-        As `undula.analysis.maps.basins.basins` gives it, varying one axis or two.
-    borders : sequence of (str, ndarray, ndarray)
+        Shares over one or two varied axes, as `undula.basins` returns them.
+    boundaries : sequence of (str, ndarray, ndarray)
         As for `phase_diagram`; for pies only.
     title : str, optional
-        The line above.
+        Title of the figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 7 inches, not known to pyplot. Pies are read clockwise from above, in the order of
-        the legend; under bars there are the same shares with their Wilson intervals.
+        10 by 7 inches, not registered with pyplot. The shares of a pie run clockwise from the top,
+        in the order of the legend; a panel below the bars shows them with their Wilson intervals.
 
     Raises
     ------
     InputError
-        The dataset is none of shares, varies more than two axes, or has no answers.
+        The dataset holds no shares, varies more than two axes, or has no results.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import basin_diagram
+    >>> stored = undula.load_sweep("results/starts.zarr")  # doctest: +SKIP
+    >>> figure = basin_diagram(undula.basins(stored))  # doctest: +SKIP
     """
     if "fraction" not in basins or not int(basins["tries"].sum()):
         raise InputError("there are no shares of verdicts; give those of a sweep with answers")
@@ -79,7 +86,7 @@ def basin_diagram(
             lower.set_ylabel(f"share of starts,\nto {confidence:.0%}")
         else:
             axes = diagram_on(figure, basins, (x, y), (_LEFT, _BOTTOM, _RIGHT - _LEFT, 0.8))
-            rows: list[Sequence[Artist]] = [patches, draw_borders(axes, borders)]
+            rows: list[Sequence[Artist]] = [patches, draw_borders(axes, boundaries)]
             top = place_legend(figure, rows, _LEFT, 0.945) - 0.012
             axes.set_position((_LEFT, _BOTTOM, _RIGHT - _LEFT, top - _BOTTOM))
             _draw_pies(axes, basins, (x, y), verdicts)
@@ -105,13 +112,13 @@ def _draw_pies(
 def _draw_slice(
     axes: Axes, place: tuple[float, float], part: tuple[float, float], width: float, verdict: str
 ) -> None:
-    """Draw the part of a pie between two shares of its round."""
+    """Draw the slice of a pie between two fractions of its circumference."""
     count = max(2, round(_CORNERS * (part[1] - part[0])) + 1)
     angles = 2.0 * np.pi * np.linspace(*part, count)
     rim = np.stack([np.sin(angles), np.cos(angles)], axis=1)
     whole = part[1] - part[0] > 1.0 - 1e-9
     corners = rim if whole else np.concatenate([[[0.0, 0.0]], rim, [[0.0, 0.0]]])
-    # A marker is scaled by its farthest corner, here always the rim.
+    # Markers are scaled by their farthest corner, which lies on the rim.
     size = float(width * np.abs(corners).max()) ** 2
     look: Any = {"marker": Path(corners), "s": size, "gid": verdict, "zorder": 5}
     colour = look_of(verdict).colour
@@ -121,7 +128,7 @@ def _draw_slice(
 def _draw_bars(
     upper: Axes, lower: Axes, basins: xr.Dataset, name: str, verdicts: Sequence[str]
 ) -> None:
-    """Draw stacked shares, and below them each share with its interval."""
+    """Draw stacked shares, and single shares with their intervals in a panel below."""
     values = np.asarray(basins[name].values, dtype=float)
     shares, low, high = (
         basins[part].sel(verdict=list(verdicts)).transpose(name, "verdict", ...).values
@@ -137,18 +144,18 @@ def _draw_bars(
         look, part = look_of(verdict), shares[:, number]
         upper.bar(values, part, widths, below, color=look.colour, edgecolor="white", gid=verdict)
         below = below + part
-        # Each a little aside, lest they cover one another.
-        aside = values + widths * ((number + 1.0) / (len(verdicts) + 1.0) - 0.5)
+        # Small shifts keep the symbols from overlapping.
+        shifted = values + widths * ((number + 1.0) / (len(verdicts) + 1.0) - 0.5)
         ends = np.stack([part - low[:, number], high[:, number] - part])
         points: Any = {"fmt": look.marker, "ms": 5.0, "color": look.colour, "capsize": 2.0}
-        # The ends are those of round-off where all or none end so.
-        some = part > 0.0
-        ends = np.maximum(ends, 0.0)[:, some]
-        lower.errorbar(aside[some], part[some], ends, clip_on=False, zorder=4, **points)
+        # Round-off may make the ends of shares 0 and 1 negative.
+        occurs = part > 0.0
+        ends = np.maximum(ends, 0.0)[:, occurs]
+        lower.errorbar(shifted[occurs], part[occurs], ends, clip_on=False, zorder=4, **points)
 
 
 def _widths(axes: Axes, values: Array) -> Array:
-    """Return the widths of bars, which are equal as seen."""
+    """Return the widths of bars, which appear equal on the scale of the axis."""
     low, high = axes.get_xlim()
     if axes.get_xscale() == "log":
         steps = np.diff(np.unique(np.log(values)))

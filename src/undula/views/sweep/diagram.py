@@ -1,4 +1,4 @@
-"""The diagram of a sweep: what every point does, how fast, and the solved borders in between.
+"""Diagram of a sweep: verdict and frequency of every point, and stability boundaries.
 
 After the phase diagram of Ling, Guo & Kanso (2018).
 """
@@ -39,70 +39,77 @@ from undula.views.sweep.points import (
 
 _SIZE = (10.0, 7.0)
 _LEFT, _RIGHT, _BOTTOM = 0.085, 0.875, 0.085
-# Points of type that a dot is wide, as a share of the way to its neighbours and at most.
-_SHARE, _LEAST, _MOST = 0.62, 3.5, 11.0
+# Width of a dot over the distance of its neighbours, and its bounds [points].
+_SHARE, _SMALLEST, _LARGEST = 0.62, 3.5, 11.0
 _RING = style.Y_COLOUR
 _COLOURS = "viridis"
-# Frequencies that differ by more than this factor are coloured by their logarithms.
+# Ratio of frequencies above which colours are logarithmic.
 _DECADE = 10.0
 
 
 def phase_diagram(
     store: xr.Dataset,
-    borders: Sequence[Border] = (),
+    boundaries: Sequence[Border] = (),
     *,
     contradicting: Sequence[Note] = (),
     title: str | None = None,
 ) -> Figure:
-    """Draw what the points of a sweep do.
+    """Draw the verdicts and frequencies of a sweep.
 
-    Over two axes dots are coloured by their frequencies and have a symbol for each verdict; where
-    tries of one point end differently, their dots stand side by side. Over one axis, frequency and
-    energy are drawn against it.
+    Over two axes, each dot has the colour of its frequency and the symbol of its verdict; different
+    verdicts of the replicates of a point are drawn side by side. Over one axis, frequency and
+    energy are drawn.
 
     Parameters
     ----------
     store : xarray.Dataset
-        A stored sweep that varies one axis or two; choose values of the others with `sel`.
-    borders : sequence of (str, ndarray, ndarray)
-        Name, values of the parameter and forces of each solved border, NaN where it has none; one
-        value of NaN for a border at one force. Only where one of the axes is the force.
+        A stored sweep that varies one or two axes; values of other axes are selected with `sel`.
+    boundaries : sequence of (str, ndarray, ndarray)
+        Name, values of the parameter and forces of each stability boundary, NaN without a boundary;
+        a single value NaN for a boundary at one force. One of the axes has to be the force.
     contradicting : sequence of (mapping of str to float, str)
-        Places on the axes of points that contradict the solved states, to be ringed, and in a
-        sentence how.
+        Places of points that contradict the solved states, which are ringed, and a sentence on each
+        contradiction.
     title : str, optional
-        The line above; by default the load, and the values of axes that do not vary.
+        Title of the figure; by default the load, and the values of axes that do not vary.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 7 inches, not known to pyplot.
+        10 by 7 inches, not registered with pyplot.
 
     Raises
     ------
     InputError
-        The dataset is no stored sweep, or varies more than two axes.
+        The dataset is not a stored sweep, or varies more than two axes.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import phase_diagram
+    >>> stored = undula.load_sweep("results/point-loads.zarr")  # doctest: +SKIP
+    >>> phase_diagram(stored).savefig("diagram.png")  # doctest: +SKIP
     """
     right, above = diagram_axes(store)
     with style.figure_style():
         figure = Figure(figsize=_SIZE)
         style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         if above is None:
-            draw_line(figure, store, borders, contradicting)
+            draw_line(figure, store, boundaries, contradicting)
         else:
-            _draw_map(figure, store, (right, above), borders, contradicting)
+            _draw_map(figure, store, (right, above), boundaries, contradicting)
     return figure
 
 
 def colour_scale(dots: Sequence[Dot]) -> Normalize | None:
-    """Return the scale of the frequencies of dots, None if none has any."""
+    """Return the colour scale of the frequencies of dots, None without any frequency."""
     span = colour_span(dots)
     if span is None:
         return None
     low, high = span
     if high > _DECADE * low:
         return LogNorm(low, high)
-    # Of a single frequency, too, a scale has two ends.
+    # A scale needs two ends even for a single frequency.
     return Normalize(low, high) if high > low else Normalize(0.5 * low, 1.5 * low)
 
 
@@ -110,20 +117,20 @@ def _draw_map(
     figure: Figure,
     store: xr.Dataset,
     names: tuple[str, str],
-    borders: Sequence[Border],
+    boundaries: Sequence[Border],
     contradicting: Sequence[Note],
 ) -> None:
     dots = dots_of(store)
     axes = diagram_on(figure, store, names, (_LEFT, _BOTTOM, _RIGHT - _LEFT, 0.7))
-    lines = draw_borders(axes, borders)
+    lines = draw_borders(axes, boundaries)
     symbols = _name_symbols(dots, ringed=bool(contradicting))
     top = place_legend(figure, [symbols, lines], _LEFT, 0.945) - 0.012
     axes.set_position((_LEFT, _BOTTOM, _RIGHT - _LEFT, top - _BOTTOM))
     steps, scale = steps_in_points(axes, store, names), colour_scale(dots)
-    size = float(np.clip(_SHARE * min(steps), _LEAST, _MOST))
+    size = float(np.clip(_SHARE * min(steps), _SMALLEST, _LARGEST))
     _draw_dots(axes, dots, (size, steps[0]), scale)
     _draw_troubles(axes, dots, size)
-    places = {(at[names[0]], at[names[1]]) for at, _ in contradicting}
+    places = {(place[names[0]], place[names[1]]) for place, _ in contradicting}
     ring: Any = {"mfc": "none", "mec": _RING, "mew": 1.4, "ls": "none", "gid": "contradicting"}
     axes.plot(*np.array(sorted(places) or np.empty((0, 2))).T, "o", ms=1.7 * size, **ring, zorder=7)
     if scale is not None:
@@ -133,38 +140,38 @@ def _draw_map(
 def _draw_dots(
     axes: Axes, dots: Sequence[Dot], sizes: tuple[float, float], scale: Normalize | None
 ) -> None:
-    """Draw the dots of each verdict, side by side where a point has several.
+    """Draw the dots of each verdict, side by side where a point has several verdicts.
 
-    The sizes are the width of a dot, and the way to the next point to the right [points].
+    The sizes are the width of a dot, and the distance to the next point on the right [points].
     """
     groups: dict[tuple[str, int, int], list[Dot]] = {}
     for dot in dots:
         if dot.verdict:
             groups.setdefault((dot.verdict, dot.place, dot.places), []).append(dot)
-    for (verdict, place, places), some in groups.items():
+    for (verdict, place, places), group in groups.items():
         width = min(sizes[0], _SHARE * sizes[1] / places)
         shift = (place - 0.5 * (places - 1)) * 1.2 * width
-        aside = ScaledTranslation(shift / 72.0, 0.0, axes.figure.dpi_scale_trans)
-        xs, ys = (np.array([getattr(dot, name) for dot in some]) for name in ("x", "y"))
+        shifted = ScaledTranslation(shift / 72.0, 0.0, axes.figure.dpi_scale_trans)
+        xs, ys = (np.array([getattr(dot, name) for dot in group]) for name in ("x", "y"))
         look: Any = {
             "marker": look_of(verdict).marker,
             "s": _area(verdict, width),
-            "transform": axes.transData + aside,
+            "transform": axes.transData + shifted,
             "zorder": 5,
             "gid": verdict,
         }
         if verdict in AT_REST:
             axes.scatter(xs, ys, facecolors="none", edgecolors=style.QUIET, linewidths=0.9, **look)
             continue
-        rates = np.array([dot.frequency for dot in some])
-        known = np.isfinite(rates) & (rates > 0.0)
+        rates = np.array([dot.frequency for dot in group])
+        moving = np.isfinite(rates) & (rates > 0.0)
         look |= {"edgecolors": style.INK, "linewidths": 0.5}
-        axes.scatter(xs[known], ys[known], c=rates[known], cmap=_COLOURS, norm=scale, **look)
-        axes.scatter(xs[~known], ys[~known], facecolors="white", **look)
+        axes.scatter(xs[moving], ys[moving], c=rates[moving], cmap=_COLOURS, norm=scale, **look)
+        axes.scatter(xs[~moving], ys[~moving], facecolors="white", **look)
 
 
 def _area(verdict: str, width: float) -> float:
-    """Return the area of a symbol [points^2] so that all look about as large."""
+    """Return the area of a symbol [points^2], with a factor that equalises apparent sizes."""
     wider = {"*": 1.35, "D": 0.85, "s": 0.9, "^": 1.05, "v": 1.05}
     smaller = 0.55 if verdict in AT_REST else 1.0
     return (smaller * wider.get(look_of(verdict).marker, 1.0) * width) ** 2
@@ -172,9 +179,9 @@ def _area(verdict: str, width: float) -> float:
 
 def _draw_troubles(axes: Axes, dots: Sequence[Dot], size: float) -> None:
     for failed, marker, colour in ((True, "x", style.Y_COLOUR), (False, "+", style.SHADOW)):
-        some = [(dot.x, dot.y) for dot in dots if not dot.verdict and dot.failed == failed]
+        missing = [(dot.x, dot.y) for dot in dots if not dot.verdict and dot.failed == failed]
         look: Any = {"color": colour, "ms": 0.6 * size, "mew": 1.0, "ls": "none", "zorder": 5}
-        places = np.array(some or np.empty((0, 2)))
+        places = np.array(missing or np.empty((0, 2)))
         axes.plot(*places.T, marker, gid="failed" if failed else "not done", **look)
 
 

@@ -1,4 +1,4 @@
-"""Shapes over a period at points of a sweep, laid out like its diagram.
+"""Gallery of a sweep: shapes over a period at some points, arranged as in its diagram.
 
 After the gallery of oscillations of Ling, Guo & Kanso (2018).
 """
@@ -20,23 +20,23 @@ from undula.views.sweep.points import (
     check_shapes,
     diagram_axes,
     dots_of,
+    even_selection,
     heading,
-    kept_shapes,
-    picked,
+    stored_shapes,
     units_of,
 )
 
 _WIDTH, _HEIGHT = 10.0, 7.0
-# Parts of the figure that the cells fill, with numbers of the axes outside.
+# Edges of the cells in fractions of the figure; the numbers of the axes lie outside.
 _LEFT, _RIGHT, _BOTTOM, _TOP = 0.11, 0.985, 0.1, 0.935
-# As many cells as can be told apart, to the right and upwards.
+# Largest number of cells to the right and upwards.
 _ACROSS, _UP = 8, 5
-# A cell fills this part of the way to the next.
+# Size of a cell over the distance of cells.
 _FILLED = 0.95
 
 
 class _Place(NamedTuple):
-    """A dot, its column and row from the lower left, and what its cell says besides the verdict."""
+    """A dot, its column and row from the lower left, and a value in words above the verdict."""
 
     dot: Dot
     column: int
@@ -45,34 +45,42 @@ class _Place(NamedTuple):
 
 
 def gallery(store: xr.Dataset, *, title: str | None = None) -> Figure:
-    """Draw the shapes that points of a sweep have kept, over one another.
+    """Draw the stored shapes of points of a sweep, one cell for each point.
 
     Parameters
     ----------
     store : xarray.Dataset
-        A stored sweep that has kept shapes and varies one axis or two. Of many points some are
-        drawn, spread evenly; of several tries the first.
+        A stored sweep with shapes that varies one or two axes. Of many points an even selection is
+        drawn, of several replicates the first.
     title : str, optional
-        The line above; by default the load, and the values of axes that do not vary.
+        Title of the figure; by default the load, and the values of axes that do not vary.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 7 inches, not known to pyplot. Cells stand in the order of their values, not to scale.
+        10 by 7 inches, not registered with pyplot. Cells are in the order of their values, not to
+        scale.
 
     Raises
     ------
     InputError
-        The dataset is no stored sweep, varies more than two axes, or has kept no shapes.
+        The dataset is not a stored sweep, varies more than two axes, or has no shapes.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import gallery
+    >>> stored = undula.load_sweep("results/point-loads.zarr")  # doctest: +SKIP
+    >>> gallery(stored).savefig("gallery.png")  # doctest: +SKIP
     """
     check_shapes(store)
     dots = [dot for dot in dots_of(store) if dot.verdict and dot.place == 0]
-    dots = [dot for dot in dots if kept_shapes(store, dot.index) is not None]
+    dots = [dot for dot in dots if stored_shapes(store, dot.index) is not None]
     if not dots:
         raise InputError("no point of the store has kept shapes yet; let the sweep go on")
     x, y = diagram_axes(store)
-    across = picked(store[x].values, _ACROSS if y else _ACROSS * _UP)
-    up = [0.0] if y is None else picked(store[y].values, _UP)
+    across = even_selection(store[x].values, _ACROSS if y else _ACROSS * _UP)
+    up = [0.0] if y is None else even_selection(store[y].values, _UP)
     with style.figure_style():
         figure = Figure(figsize=(_WIDTH, _HEIGHT))
         style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
@@ -96,21 +104,21 @@ def gallery(store: xr.Dataset, *, title: str | None = None) -> Figure:
 
 
 def _size_of_rows(count: int) -> tuple[int, int]:
-    """Return how many columns and rows make so many cells the largest."""
+    """Return the numbers of columns and rows for which `count` cells are largest."""
     room = (_RIGHT - _LEFT) * _WIDTH, (_TOP - _BOTTOM) * _HEIGHT
     sizes = [(columns, -(-count // columns)) for columns in range(1, _ACROSS + 1)]
-    # Cells are about as high as wide, words included.
+    # With its words, a cell is about as high as wide.
     return max(sizes, key=lambda size: min(room[0] / size[0], room[1] / size[1]))
 
 
 def _in_rows(dots: Sequence[Dot], across: list[float], size: tuple[int, int]) -> list[_Place]:
-    """Return places of the points of one axis, row by row from above."""
-    found = []
+    """Return the places of the points of one axis, row by row from above."""
+    places = []
     for dot in dots:
         if dot.x in across:
             below, column = divmod(across.index(dot.x), size[0])
-            found.append(_Place(dot, column, size[1] - below - 1, f"{dot.x:.4g}"))
-    return found
+            places.append(_Place(dot, column, size[1] - below - 1, f"{dot.x:.4g}"))
+    return places
 
 
 def _draw_cells(
@@ -132,7 +140,7 @@ def _draw_cells(
 def _cell(store: xr.Dataset, place: _Place, inches: float) -> Cell:
     verdict = place.dot.verdict
     words = words_below(place.value, verdict, inches)
-    shapes = kept_shapes(store, place.dot.index)
+    shapes = stored_shapes(store, place.dot.index)
     return Cell(shapes, words if place.value else words[1:], look_of(verdict).colour)
 
 

@@ -1,6 +1,6 @@
-"""Paths of the mean position seen from above, at the points of a sweep.
+"""Paths of the mean position at the points of a sweep, seen from above.
 
-After the phase diagram of Ling, Guo & Kanso (2018), where grey stands for time.
+After the phase diagram of Ling, Guo & Kanso (2018), where shades of grey represent time.
 """
 
 from collections.abc import Sequence
@@ -29,79 +29,88 @@ from undula.views.sweep.points import (
     check_shapes,
     diagram_axes,
     dots_of,
+    even_selection,
     heading,
-    picked,
 )
 
 _SIZE = (10.0, 7.0)
 _LEFT, _RIGHT, _BOTTOM = 0.085, 0.975, 0.085
-# As many paths as can be told apart, to the right and upwards.
+# Largest number of paths to the right and upwards.
 _ACROSS, _UP = 14, 10
-# A path is as wide as this part of the way to the next one, if it is the widest of all.
+# Width of the widest path over the distance of paths.
 _FILLED = 0.86
-# A mean position that stays this near to the axis [L] is drawn as a dot.
+# Largest distance from the axis of a mean position that is drawn as a dot [L].
 _AT_REST = 1e-3
-# Shades of the first and the last instant.
+# Grey of the first and the last instant.
 _PALE, _DARK = 0.82, 0.05
 
 
 def mean_paths(
-    store: xr.Dataset, borders: Sequence[Border] = (), *, title: str | None = None
+    store: xr.Dataset, boundaries: Sequence[Border] = (), *, title: str | None = None
 ) -> Figure:
-    """Draw the path of the mean position over some periods, from above, at each of many points.
+    """Draw the path of the mean position over some periods, seen from above, at many points.
 
     Parameters
     ----------
     store : xarray.Dataset
-        A stored sweep that has kept its last periods and varies two axes. Of many points some are
-        drawn, spread evenly; of several tries the first.
-    borders : sequence of (str, ndarray, ndarray)
+        A stored sweep with last periods that varies two axes. Of many points an even selection is
+        drawn, of several replicates the first.
+    boundaries : sequence of (str, ndarray, ndarray)
         As for `phase_diagram`.
     title : str, optional
-        The line above; by default the load, and the values of axes that do not vary.
+        Title of the figure; by default the load, and the values of axes that do not vary.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 7 inches, not known to pyplot. All paths have one scale, told above.
+        10 by 7 inches, not registered with pyplot. All paths have one scale, which a bar shows.
 
     Raises
     ------
     InputError
-        The dataset is no stored sweep, does not vary two axes, or has kept nothing of its periods.
+        The dataset is not a stored sweep, does not vary two axes, or has no last periods.
+
+    Examples
+    --------
+    >>> import undula
+    >>> from undula.views import mean_paths
+    >>> stored = undula.load_sweep("results/power-loads.zarr")  # doctest: +SKIP
+    >>> mean_paths(stored).savefig("paths.png")  # doctest: +SKIP
     """
     check_shapes(store)
     x, y = diagram_axes(store)
     if y is None:
         raise InputError(f"the store varies {x} only; paths are laid out over two axes")
-    drawn = store.sel({x: picked(store[x].values, _ACROSS), y: picked(store[y].values, _UP)})
+    drawn = store.sel(
+        {x: even_selection(store[x].values, _ACROSS), y: even_selection(store[y].values, _UP)}
+    )
     paths = [(dot, _path(drawn, dot)) for dot in dots_of(drawn) if dot.verdict and dot.place == 0]
-    known = [(dot, path) for dot, path in paths if path is not None]
-    if not known:
+    shown = [(dot, path) for dot, path in paths if path is not None]
+    if not shown:
         raise InputError("no point of the store has kept its path yet; let the sweep go on")
     with style.figure_style():
         figure = Figure(figsize=_SIZE)
         style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         axes = diagram_on(figure, drawn, (x, y), (_LEFT, _BOTTOM, _RIGHT - _LEFT, 0.8))
-        top = place_legend(figure, [draw_borders(axes, borders)], _LEFT, 0.905) - 0.01
+        top = place_legend(figure, [draw_borders(axes, boundaries)], _LEFT, 0.905) - 0.01
         axes.set_position((_LEFT, _BOTTOM, _RIGHT - _LEFT, top - _BOTTOM))
-        widest = max(float(np.abs(path).max()) for _, path in known)
+        widest = max(float(np.abs(path).max()) for _, path in shown)
         scale = 0.5 * _FILLED * min(steps_in_points(axes, drawn, (x, y))) / max(widest, _AT_REST)
-        for dot, path in known:
+        for dot, path in shown:
             _draw(axes, dot, path, scale)
-        _tell_scale(figure, scale)
+        _draw_key(figure, scale)
     return figure
 
 
 def _path(store: xr.Dataset, dot: Dot) -> Array | None:
-    """Return the path (k, 2) of the mean position; None where it is not known yet."""
-    kept = store["path"].isel(dict(dot.index)).transpose("instant", "axis")
-    path = np.asarray(kept.values)[:, :2]
+    """Return the path (k, 2) of the mean position; None if it is not stored."""
+    stored = store["path"].isel(dict(dot.index)).transpose("instant", "axis")
+    path = np.asarray(stored.values)[:, :2]
     return path if np.isfinite(path).all() else None
 
 
 def _draw(axes: Axes, dot: Dot, path: Array, scale: float) -> None:
-    """Draw a path around its point, so many points of type to L."""
+    """Draw a path around its point, with a scale in points of type per L."""
     if np.abs(path).max() < _AT_REST:
         axes.plot([dot.x], [dot.y], ".", color=style.QUIET, ms=4, zorder=3, gid="mean path")
         return
@@ -118,14 +127,14 @@ def _draw(axes: Axes, dot: Dot, path: Array, scale: float) -> None:
         "gid": "mean path",
     }
     lines = LineCollection(list(pieces), **look)
-    # Paths at the edge reach beyond the axes.
+    # Paths at the edge extend beyond the axes.
     lines.set_clip_on(False)
     axes.add_collection(lines, autolim=False)
 
 
-def _tell_scale(figure: Figure, scale: float) -> None:
-    """Draw a bar of a round length, and what the shades mean, in the upper right corner."""
-    # The largest of 1, 2 and 5 times a power of ten that takes no more than this [points].
+def _draw_key(figure: Figure, scale: float) -> None:
+    """Draw a bar of a round length, and a key of the shades, in the upper right corner."""
+    # The length is the largest of 1, 2 and 5 times a power of ten that fits into 42 points of type.
     most = 42.0 / scale
     power = 10.0 ** np.floor(np.log10(most))
     length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most)

@@ -1,4 +1,4 @@
-"""The diagram of a sweep as a page to point at: a single file that needs nothing else."""
+"""Interactive diagram of a sweep: a single page of HTML without external resources."""
 
 import base64
 import html
@@ -25,56 +25,64 @@ from undula.views.sweep.points import (
     diagram_axes,
     dots_of,
     heading,
-    kept_shapes,
     note_at,
+    stored_shapes,
 )
 
-# Positions are kept as whole numbers of this part of L: of 16 bits, they reach to 3 L.
+# Positions per L as integers: with 16 bits, they extend to 3 L.
 _PER_LENGTH = 10_000
-# Shades of shapes, from the first to the last.
+# Number of shades of shapes.
 _SHADES = 24
-# Variables that are no figures of a point.
+# Variables that are not listed in the table of a point.
 _NO_FIGURES = ("status", "shapes", "shape_times")
 
 
 def phase_page(
     store: xr.Dataset,
-    borders: Sequence[Border] = (),
+    boundaries: Sequence[Border] = (),
     *,
     contradicting: Sequence[Note] = (),
     title: str | None = None,
 ) -> str:
     """Return the diagram of a sweep as a page for a browser.
 
-    Pointing at a dot shows all that was found there and, if the sweep has kept shapes, draws them
-    beside; a click keeps them until the next one.
+    Pointing at a dot shows the results there and, if the sweep has shapes, draws them next to the
+    diagram; a click keeps them until the next click.
 
     Parameters
     ----------
     store : xarray.Dataset
-        A stored sweep that varies one axis or two; choose values of the others with `sel`.
-    borders : sequence of (str, ndarray, ndarray)
+        A stored sweep that varies one or two axes; values of other axes are selected with `sel`.
+    boundaries : sequence of (str, ndarray, ndarray)
         As for `phase_diagram`.
     contradicting : sequence of (mapping of str to float, str)
-        As for `phase_diagram`; the sentences stand among what was found.
+        As for `phase_diagram`; the sentences are listed among the results.
     title : str, optional
-        The line above; by default the load, and the values of axes that do not vary.
+        Title of the page; by default the load, and the values of axes that do not vary.
 
     Returns
     -------
     str
-        A whole page of HTML with the plotting library in it, some 5 MB; nothing is fetched.
+        A page of HTML that includes the plotting library, about 5 MB, and loads nothing else.
 
     Raises
     ------
     InputError
-        The dataset is no stored sweep, or varies more than two axes.
+        The dataset is not a stored sweep, or varies more than two axes.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> import undula
+    >>> from undula.views import phase_page
+    >>> stored = undula.load_sweep("results/point-loads.zarr")  # doctest: +SKIP
+    >>> Path("page.html").write_text(phase_page(stored))  # doctest: +SKIP
     """
     names, dots = diagram_axes(store), dots_of(store)
     points = [_point(store, dot, note_at(dot, names, contradicting)) for dot in dots]
     content = {
         "traces": [
-            *border_traces(store, names, borders),
+            *border_traces(store, names, boundaries),
             *dot_traces(store, names, dots, contradicting),
         ],
         "layout": layout(store, names, dots),
@@ -84,48 +92,48 @@ def phase_page(
         "colours": [to_hex(colour) for colour in style.shape_colours(_SHADES)],
         **_extent(store),
     }
-    # As JSON has it, but never the end of the script that it stands in.
-    told = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    # Escaped, since the JSON must not end the script that contains it.
+    embedded = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     return FRAME.format(
         title=html.escape(plain(heading(store) if title is None else title)),
         library=plotting_library(),
-        content=told,
+        content=embedded,
         script=SCRIPT,
     )
 
 
 @cache
 def plotting_library() -> str:
-    """Return the plotting library without the addresses of other machines.
+    """Return the plotting library without addresses of other machines.
 
-    They belong to maps and to services that this page does not use. Names in its notices stay.
+    The addresses belong to maps and services that the page does not use. Names in notices stay.
     """
-    from plotly.offline import get_plotlyjs  # slow to learn, and no figure needs it
+    from plotly.offline import get_plotlyjs  # the import is slow, and no figure needs it
 
     library = re.sub(r"https?://(?!www\.w3\.org/)", "", str(get_plotlyjs()))
     return library.replace("</script", "<\\/script")
 
 
 def _point(store: xr.Dataset, dot: Dot, note: str | None) -> dict[str, Any]:
-    """Return what a page tells of a dot."""
-    here = store.isel(dict(dot.index))
-    figures = [(name, f"{float(here[name]):.6g}") for name in axes_of(store)]
+    """Return the results at a dot for its page: table, shapes and plane of motion."""
+    point_data = store.isel(dict(dot.index))
+    figures = [(name, f"{float(point_data[name]):.6g}") for name in axes_of(store)]
     if dot.of > 1:
         figures.append(("tries", f"{dot.tries} of {dot.of} end so, the first is told"))
     if note is not None:
         figures.append(("contradicts", note))
-    for name, value in here.data_vars.items():
+    for name, value in point_data.data_vars.items():
         if value.ndim == 0 and name not in _NO_FIGURES:
             figures += _figure(str(name), value)
     point: dict[str, Any] = {"figures": figures}
-    shapes = kept_shapes(store, dot.index) if "shapes" in store and dot.verdict else None
+    shapes = stored_shapes(store, dot.index) if "shapes" in store and dot.verdict else None
     if shapes is not None:
         point |= {"shapes": _packed(shapes), "angle": _plane(shapes)}
     return point
 
 
 def _figure(name: str, value: xr.DataArray) -> list[tuple[str, str]]:
-    """Return a variable as a line of a table, none where it has no value."""
+    """Return a variable as a row of a table, no row without a value."""
     unit = str(value.attrs.get("units", ""))
     if np.issubdtype(value.dtype, np.number):
         number = float(value)
@@ -139,12 +147,12 @@ def _packed(shapes: Array) -> str:
 
 
 def _plane(shapes: Array) -> float:
-    """Return the angle of the plane that holds most of a motion [rad]."""
+    """Return the azimuth of the best plane of a motion [rad]."""
     return round(float(0.5 * np.angle(np.sum(transverse(shapes) ** 2))), 4)
 
 
 def _extent(store: xr.Dataset) -> dict[str, float]:
-    """Return how far shapes reach to the sides and downwards [L]."""
+    """Return the extent of shapes to the sides and downwards [L]."""
     if "shapes" not in store:
         return {"reach": 1.0, "lowest": 0.0}
     positions = store["shapes"].transpose(..., "axis").values

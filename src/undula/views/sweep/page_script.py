@@ -1,10 +1,9 @@
-"""What a page consists of besides its content: its frame, its style, and the script that draws.
+"""Frame of an interactive page: HTML, style, and the script that draws.
 
-The page holds everything that it needs and is forbidden to ask for more: its policy allows nothing
-but what stands in it.
+The page contains all that it needs, and its content policy forbids to load anything else.
 """
 
-#: To be filled with the title, the plotting library, and the content as JSON.
+#: HTML with placeholders for the title, the plotting library, and the content as JSON.
 FRAME = """<!DOCTYPE html>
 <html lang="en">
 <head>

@@ -1,4 +1,4 @@
-"""Dots and borders of a page as its plotting library wants them: plain mappings and lists."""
+"""Dots and stability boundaries of a page in the form of its plotting library."""
 
 import math
 import re
@@ -48,12 +48,22 @@ _SYMBOLS = {
 
 
 def plain(text: str) -> str:
-    """Return a label of the figures with its formulas as plain letters."""
-    return re.sub(r"\$(.*?)\$", lambda found: _letters(found[1]), text)
+    """Return a label of figures with formulas in plain letters."""
+    return re.sub(r"\$(.*?)\$", lambda match: _letters(match[1]), text)
 
 
 def layout(store: xr.Dataset, names: Names, dots: Sequence[Dot]) -> dict[str, Any]:
-    """Return the axes, the colours and the legend of a page."""
+    """Return the axes, the colours and the legend of a page.
+
+    Parameters
+    ----------
+    store
+        The stored sweep.
+    names
+        Names of the horizontal and the vertical axis.
+    dots
+        Dots of the sweep.
+    """
     x, y = names
     units = units_of(store)
     above = style.frequency_label(paper_time=False) if y is None else axis_label(y, units)
@@ -71,32 +81,42 @@ def layout(store: xr.Dataset, names: Names, dots: Sequence[Dot]) -> dict[str, An
     }
 
 
-def border_traces(store: xr.Dataset, names: Names, borders: Sequence[Border]) -> list[Any]:
-    """Return borders as lines: over two axes along the one to the right, over one across it."""
+def border_traces(store: xr.Dataset, names: Names, boundaries: Sequence[Border]) -> list[Any]:
+    """Return boundaries as lines: curves over two axes, vertical lines over one axis.
+
+    Parameters
+    ----------
+    store
+        The stored sweep.
+    names
+        Names of the horizontal and the vertical axis.
+    borders
+        Stability boundaries, as for `phase_diagram`.
+    """
     traces = []
-    for name, values, forces in borders:
-        known = np.isfinite(forces)
-        if not known.any():
+    for name, values, forces in boundaries:
+        finite = np.isfinite(forces)
+        if not finite.any():
             continue
         order = np.argsort(values)
         xs, ys = np.asarray(values)[order].tolist(), _numbers(np.asarray(forces)[order])
         if not np.isfinite(values).all():
             ends = store[names[0]].values
             xs, ys = [float(ends.min()), float(ends.max())], [float(forces[0])] * 2
-        told = "%{y:.6g}"
+        label = "%{y:.6g}"
         if names[1] is None:
             xs, ys = [float(forces[0])] * 2, [0.0, _highest(dots_of(store))]
-            told = f"{forces[0]:.6g}"
+            label = f"{forces[0]:.6g}"
         traces.append(
             {
                 "type": "scatter",
-                # A force beside gaps is no line.
-                "mode": "lines" if len(xs) == 2 or known.sum() > 1 else "lines+markers",
+                # A single force between gaps is drawn as a marker.
+                "mode": "lines" if len(xs) == 2 or finite.sum() > 1 else "lines+markers",
                 "name": name,
                 "x": xs,
                 "y": ys,
                 "line": {"color": style.INK, "dash": _DASHES.get(name, _OTHER_DASHES)},
-                "hovertemplate": f"{name} {told}<extra></extra>",
+                "hovertemplate": f"{name} {label}<extra></extra>",
             }
         )
     return traces
@@ -105,23 +125,35 @@ def border_traces(store: xr.Dataset, names: Names, borders: Sequence[Border]) ->
 def dot_traces(
     store: xr.Dataset, names: Names, dots: Sequence[Dot], contradicting: Sequence[Note]
 ) -> list[Any]:
-    """Return the dots of each verdict, those without one, and the rings around some."""
+    """Return the dots of each verdict, those without a verdict, and rings around contradictions.
+
+    Parameters
+    ----------
+    store
+        The stored sweep.
+    names
+        Names of the horizontal and the vertical axis.
+    dots
+        Dots of the sweep.
+    contradicting
+        Contradicting points, as for `phase_diagram`.
+    """
     traces = []
-    every = list(enumerate(dots))
+    numbered = list(enumerate(dots))
     for verdict in ordered(dot.verdict for dot in dots if dot.verdict):
-        some = [(number, dot) for number, dot in every if dot.verdict == verdict]
-        traces.append(_trace(store, names, verdict, some, _marker(verdict, names, some)))
+        group = [(number, dot) for number, dot in numbered if dot.verdict == verdict]
+        traces.append(_trace(store, names, verdict, group, _marker(verdict, names, group)))
         traces[-1] |= {"legendgroup": verdict, "showlegend": False}
         traces.append(_in_legend(verdict, names))
     for name, failed, symbol, colour in (
         ("failed", True, "x-thin-open", style.Y_COLOUR),
         ("not done", False, "cross-thin-open", style.SHADOW),
     ):
-        some = [(k, dot) for k, dot in every if not dot.verdict and dot.failed == failed]
-        if some:
+        group = [(k, dot) for k, dot in numbered if not dot.verdict and dot.failed == failed]
+        if group:
             marker = {"symbol": symbol, "color": colour, "size": 7}
-            traces.append(_trace(store, names, name, some, marker))
-    ringed = [(k, dot) for k, dot in every if note_at(dot, names, contradicting) is not None]
+            traces.append(_trace(store, names, name, group, marker))
+    ringed = [(k, dot) for k, dot in numbered if note_at(dot, names, contradicting) is not None]
     if ringed:
         line = {"color": style.Y_COLOUR, "width": 2}
         marker = {"symbol": "circle-open", "size": 20, "color": style.Y_COLOUR, "line": line}
@@ -134,25 +166,25 @@ def _trace(
     store: xr.Dataset,
     names: Names,
     name: str,
-    some: Sequence[tuple[int, Dot]],
+    group: Sequence[tuple[int, Dot]],
     marker: Mapping[str, Any],
 ) -> dict[str, Any]:
-    places = [_place(store, names, dot) for _, dot in some]
+    places = [_place(store, names, dot) for _, dot in group]
     return {
         "type": "scatter",
         "mode": "markers",
         "name": name,
         "x": [place[0] for place in places],
         "y": [place[1] for place in places],
-        "customdata": [number for number, _ in some],
-        "text": [_words(dot) for _, dot in some],
+        "customdata": [number for number, _ in group],
+        "text": [_words(dot) for _, dot in group],
         "hovertemplate": f"<b>{name}</b><br>%{{text}}<extra></extra>",
         "marker": dict(marker),
     }
 
 
 def _in_legend(verdict: str, names: Names) -> dict[str, Any]:
-    """Return what names a verdict: its symbol, in no colour of a frequency."""
+    """Return the legend entry of a verdict: its symbol without a colour of frequency."""
     marker = _marker(verdict, names, [])
     if names[1] is not None and verdict not in AT_REST:
         marker["color"] = _NO_COLOUR
@@ -160,7 +192,7 @@ def _in_legend(verdict: str, names: Names) -> dict[str, Any]:
     return point | {"type": "scatter", "mode": "markers", "name": verdict}
 
 
-def _marker(verdict: str, names: Names, some: Sequence[tuple[int, Dot]]) -> dict[str, Any]:
+def _marker(verdict: str, names: Names, group: Sequence[tuple[int, Dot]]) -> dict[str, Any]:
     look = look_of(verdict)
     marker: dict[str, Any] = {"symbol": look.symbol, "size": 12, "color": look.colour}
     if verdict in AT_REST:
@@ -168,7 +200,7 @@ def _marker(verdict: str, names: Names, some: Sequence[tuple[int, Dot]]) -> dict
     marker["line"] = {"color": style.INK, "width": 0.7}
     if names[1] is None:
         return marker
-    rates = _numbers(np.array([dot.frequency for _, dot in some]))
+    rates = _numbers(np.array([dot.frequency for _, dot in group]))
     logs = [math.log10(rate) if rate else None for rate in rates]
     if not any(logs):
         return marker | {"color": "white"}
@@ -176,17 +208,17 @@ def _marker(verdict: str, names: Names, some: Sequence[tuple[int, Dot]]) -> dict
 
 
 def _place(store: xr.Dataset, names: Names, dot: Dot) -> tuple[float, float]:
-    """Return the place of a dot, a little aside where its point has several."""
+    """Return the place of a dot, shifted where its point has several dots."""
     x, y = names
     if y is None:
         return dot.x, dot.frequency if np.isfinite(dot.frequency) else 0.0
-    aside = 0.28 * (dot.place - 0.5 * (dot.places - 1))
+    shift = 0.28 * (dot.place - 0.5 * (dot.places - 1))
     values = np.unique(np.asarray(store[x].values, dtype=float))
     if dot.places == 1 or values.size < 2:
         return dot.x, dot.y
     if scale_of(values) == "log":
-        return float(dot.x * np.exp(aside * np.diff(np.log(values)).min())), dot.y
-    return float(dot.x + aside * np.diff(values).min()), dot.y
+        return float(dot.x * np.exp(shift * np.diff(np.log(values)).min())), dot.y
+    return float(dot.x + shift * np.diff(values).min()), dot.y
 
 
 def _words(dot: Dot) -> str:
@@ -196,7 +228,7 @@ def _words(dot: Dot) -> str:
 
 
 def _colours(dots: Sequence[Dot]) -> dict[str, Any]:
-    """Return the scale of frequencies: of their logarithms, marked with plain numbers."""
+    """Return the colour scale of frequencies: logarithmic, with plain numbers."""
     span = colour_span(dots)
     if span is None:
         return {"showscale": False}
@@ -236,7 +268,7 @@ def _highest(dots: Sequence[Dot]) -> float:
 
 
 def _numbers(values: Array) -> list[float | None]:
-    """Return numbers for JSON, which has none that are not finite."""
+    """Return numbers for JSON, with None in place of NaN and infinity."""
     return [float(value) if np.isfinite(value) else None for value in values]
 
 

@@ -1,4 +1,4 @@
-"""The commands on studies of many runs: sweep, status."""
+"""The commands on sweeps of many runs: sweep and status."""
 
 from pathlib import Path
 from typing import Annotated
@@ -41,11 +41,10 @@ def sweep(
     The store is a Zarr group, by default results/ and the name of the file. A study that was
     stopped goes on with the same command.
     """
-    from undula.app.commands.sweep import Asked
-    from undula.app.commands.sweep import sweep as carry_out
+    from undula.app.commands.sweep import SweepRequest, run_sweep
 
-    asked = Asked(workers, scheduler, retry_failed, seconds_of(budget))
-    return carry_out(file, changes or (), out, asked, as_json=as_json)
+    request = SweepRequest(workers, scheduler, retry_failed, seconds_of(budget))
+    return run_sweep(file, changes or (), out, request, as_json=as_json)
 
 
 def status(
@@ -55,6 +54,6 @@ def status(
     as_json: Json = False,
 ) -> int:
     """Tell how far a study is, also while it goes on: points done, verdicts, failures."""
-    from undula.app.commands.sweep import status as tell
+    from undula.app.commands.sweep import report_status
 
-    return tell(store, as_json=as_json)
+    return report_status(store, as_json=as_json)

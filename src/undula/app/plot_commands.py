@@ -1,4 +1,4 @@
-"""The commands that draw what is stored: plot, movie."""
+"""The commands that draw stored results: plot and movie."""
 
 from pathlib import Path
 from typing import Annotated
@@ -32,7 +32,7 @@ def plot(
         list[str] | None,
         typer.Option("--at", metavar="KEY=VALUE", help="Of a study: a value of one of its axes."),
     ] = None,
-    borders: Annotated[
+    boundaries: Annotated[
         bool, typer.Option("--borders", help="Of a study: solve for borders, and compare.")
     ] = False,
     overwrite: Overwrite = False,
@@ -40,17 +40,23 @@ def plot(
 ) -> int:
     """Draw a stored run or a study of many runs, by default beside it as .png."""
     if result.is_dir():
-        from undula.app.commands.plot_sweep import Asked, plot_study
+        from undula.app.commands.plot_sweep import PlotRequest, plot_sweep
 
-        return plot_study(result, Asked(view, out, at or (), borders, overwrite), as_json=as_json)
+        request = PlotRequest(view, out, at or (), boundaries, overwrite)
+        return plot_sweep(result, request, as_json=as_json)
+    for option, given in (("--view", view != "diagram"), ("--at", at), ("--borders", boundaries)):
+        if given:
+            raise InputError(f"{option} is about studies, and {result} is none; leave it out")
+    return _plot_run(result, out, overwrite=overwrite, as_json=as_json)
+
+
+def _plot_run(result: Path, out: Path | None, *, overwrite: bool, as_json: bool) -> int:
+    """Draw the portrait of a stored run and answer; return the exit status."""
     from undula.app.commands.drawing import draw_figure, figure_path
     from undula.storage.outputs import claimed
     from undula.storage.run_file import load_result
     from undula.terminal.output import DONE, reply
 
-    for option, given in (("--view", view != "diagram"), ("--at", at), ("--borders", borders)):
-        if given:
-            raise InputError(f"{option} is about studies, and {result} is none; leave it out")
     path = figure_path(result, out)
     stored, renewed = load_result(result), [path] if out is None else []
     with claimed(path, renewed=renewed, overwrite=overwrite, reads=[result]) as claim:

@@ -1,4 +1,4 @@
-"""The commands that answer by solving instead of running: stability, find, follow, threshold."""
+"""The commands that solve for states: stability, find, follow and threshold."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -40,25 +40,25 @@ def stability(
     With --forces the leading eigenvalue at each force, with --along thresholds along a parameter,
     with both a map.
     """
-    from undula.app.commands.stability import Question, ask
+    from undula.app.commands.stability import StabilityRequest, analyse
     from undula.inputs.input import read_stability_input
     from undula.inputs.ranges import parse_axis, parse_values
 
-    given = [*(changes or ()), *([f"stability.method={method}"] if method is not None else [])]
-    question = Question(
-        wanted=read_stability_input(file, given),
+    overrides = [*(changes or ()), *([f"stability.method={method}"] if method is not None else [])]
+    request = StabilityRequest(
+        wanted=read_stability_input(file, overrides),
         forces=None if forces is None else parse_values("--forces", forces),
         along=None if along is None else parse_axis("--along", along),
     )
     with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
-        told, draw = ask(question)
+        answer, draw = analyse(request)
 
         def save(path: Path) -> None:
             from undula.app.commands.drawing import save_figure
 
             save_figure(draw(), path, claim)
 
-        return _reply(told, plot, save, as_json=as_json)
+        return _reply(answer, plot, save, as_json=as_json)
 
 
 def find(
@@ -88,15 +88,15 @@ def find(
     A periodic motion is that which a run comes to: the one of --run, whose model it is of, or else
     one from a small kick.
     """
-    from undula.app.commands import find as finding
-    from undula.app.commands.find_start import beginning_of
+    from undula.app.commands.find import find_state
+    from undula.app.commands.find_start import start_of_search
     from undula.terminal.compile_notice import compilation_announced
     from undula.terminal.output import DONE, notice, reply
 
-    asked = beginning_of(kind, file, changes or (), run, seed)
+    start = start_of_search(kind, file, changes or (), run, seed)
     with compilation_announced(notice):
-        told = finding.find(asked, kind, converge=converge)
-    reply(told.answer, told.text, as_json=as_json)
+        answer = find_state(start, kind, converge=converge)
+    reply(answer.answer, answer.text, as_json=as_json)
     return DONE
 
 
@@ -139,9 +139,9 @@ def follow(
     interval = ParameterInterval(*parse_way("--along", along))
     with _figure_claimed(plot, overwrite=overwrite, reads=[file, *(runs or ())]) as claim:
         stored = _runs_to_draw(kind, interval.parameter, plot, runs or ())
-        model, title = build_model(wanted), wanted.tell({interval.parameter})
+        model, title = build_model(wanted), wanted.describe({interval.parameter})
         with compilation_announced(notice):
-            told, branch = follow_along(model, kind, interval, converge=converge, title=title)
+            answer, branch = follow_along(model, kind, interval, converge=converge, title=title)
 
         def save(path: Path) -> None:
             from undula.app.commands.drawing import draw_branch, draw_straight
@@ -151,7 +151,7 @@ def follow(
             elif branch is not None:
                 draw_branch(branch, stored, path, claim, title=title)
 
-        return _reply(told, None if branch is None else plot, save, as_json=as_json)
+        return _reply(answer, None if branch is None else plot, save, as_json=as_json)
 
 
 def threshold(
@@ -194,80 +194,80 @@ def threshold(
     if along is None:
         if plot is not None:
             raise InputError("--plot draws a curve; give --along as well")
-        title = wanted.tell({FORCE})
+        title = wanted.describe({FORCE})
         with compilation_announced(notice):
-            told = answer_threshold(model, name, converge=converge, up_to=end, title=title)
-        return _reply(told, None, as_json=as_json)
+            answer = answer_threshold(model, name, converge=converge, up_to=end, title=title)
+        return _reply(answer, None, as_json=as_json)
     axis = parse_axis("--along", along)
     with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
-        title = wanted.tell({FORCE, axis[0]})
+        title = wanted.describe({FORCE, axis[0]})
         with compilation_announced(notice):
-            told, found = answer_threshold_curve(
+            answer, thresholds = answer_threshold_curve(
                 model, name, axis, converge=converge, up_to=end, title=title
             )
 
         def save(path: Path) -> None:
             from undula.app.commands.drawing import draw_thresholds
 
-            done = axis[0], axis[1][: len(found)]
+            done = axis[0], axis[1][: len(thresholds)]
             units = model.units.names()
-            draw_thresholds(name, done, found, path, claim, title=title, units=units)
+            draw_thresholds(name, done, thresholds, path, claim, title=title, units=units)
 
-        return _reply(told, plot, save, as_json=as_json)
+        return _reply(answer, plot, save, as_json=as_json)
 
 
 def _reply(
-    told: "Answer",
+    answer: "Answer",
     figure: Path | None,
     save: Callable[[Path], None] | None = None,
     *,
     as_json: bool,
 ) -> int:
-    """Draw what is told, if there is a name for the figure, and tell it; return the exit status.
+    """Draw the figure, if it has a name, and answer; return the exit status.
 
-    What was computed is told even where the figure cannot be drawn.
+    A figure that cannot be drawn does not suppress the answer.
     """
     from undula.terminal.output import STOPPED_EARLY, notice, reply
 
-    status = _ended(told)
+    status = _exit_status(answer)
     try:
         if figure is not None and save is not None:
             save(figure)
     except InputError as error:
         notice(f"there is no figure: {error}")
         figure, status = None, STOPPED_EARLY
-    told = _with_figure(told, figure)
-    reply(told.answer, told.text, as_json=as_json)
+    answer = _with_figure(answer, figure)
+    reply(answer.answer, answer.text, as_json=as_json)
     return status
 
 
-def _ended(told: "Answer") -> int:
-    """Return the exit status, having said so if Ctrl-C ended the search before its end."""
+def _exit_status(answer: "Answer") -> int:
+    """Return the exit status; give notice of a search that Ctrl-C has ended early."""
     from undula.terminal.output import DONE, STOPPED_EARLY, notice
 
-    if told.answer["status"] != "interrupted":
+    if answer.answer["status"] != "interrupted":
         return DONE
     notice("interrupted; what was found until then is told, the same command begins anew")
     return STOPPED_EARLY
 
 
 def _end_of_search(up_to: float | None) -> float | None:
-    """Return the force at which a search is to end, having refused what is none."""
-    # Written so that NaN, too, is refused.
+    """Return the force at which a search ends; refuse a value that is not a positive number."""
+    # This form of the condition also refuses NaN.
     if up_to is not None and not 0.0 < up_to < float("inf"):
         raise InputError(f"--up-to {up_to} is out of range; give a finite force above 0")
     return up_to
 
 
-def _with_figure(told: "Answer", figure: Path | None) -> "Answer":
-    """Return what is told with the name of the figure that shows it, null without one."""
-    text = told.text if figure is None else f"{told.text}\n  figure  {figure}"
-    answer = told.answer | {"figure": None if figure is None else str(figure)}
-    return replace(told, answer=answer, text=text)
+def _with_figure(answer: "Answer", figure: Path | None) -> "Answer":
+    """Return an answer with the name of its figure, null without one."""
+    text = answer.text if figure is None else f"{answer.text}\n  figure  {figure}"
+    named = answer.answer | {"figure": None if figure is None else str(figure)}
+    return replace(answer, answer=named, text=text)
 
 
 def _runs_to_draw(kind: str, parameter: str, plot: Path | None, runs: Sequence[Path]) -> list[Any]:
-    """Return the stored runs, having refused what cannot be drawn before anything is computed."""
+    """Return the stored runs; refuse a figure that cannot be drawn before anything is computed."""
     if runs and (plot is None or kind == "straight"):
         raise InputError("--run draws a dot beside spinning or flapping; give --plot for these")
     if plot is not None and kind == "straight":
@@ -285,7 +285,7 @@ def _runs_to_draw(kind: str, parameter: str, plot: Path | None, runs: Sequence[P
 def _figure_claimed(
     path: Path | None, *, overwrite: bool, reads: Sequence[Path | None]
 ) -> Iterator["Claim"]:
-    """Claim the name of a figure, if there is one, before anything is computed."""
+    """Claim the name of a figure, if it has one, before anything is computed."""
     from undula.storage.outputs import claimed
 
     names = [] if path is None else [path]
@@ -293,6 +293,6 @@ def _figure_claimed(
         from undula.app.commands.drawing import check_figure_name
 
         check_figure_name("--plot", path)
-    given = [file for file in reads if file is not None]
-    with claimed(*names, overwrite=overwrite, reads=given) as claim:
+    files = [file for file in reads if file is not None]
+    with claimed(*names, overwrite=overwrite, reads=files) as claim:
         yield claim

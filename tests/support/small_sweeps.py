@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from undula.sweeps.point import line, points
-from undula.sweeps.store import StudyStore, load_sweep, open_study
-from undula.sweeps.sweep import Study, read_study
-from undula.sweeps.work_queue import Piece, SweepWork
+from undula.sweeps.point import point_records, row_records
+from undula.sweeps.store import SweepStore, load_sweep, open_sweep
+from undula.sweeps.sweep import Sweep, read_sweep
+from undula.sweeps.work_queue import SweepTask, SweepWork
 
 #: Beats and spins of a few links, each point some milliseconds.
 QUICK = """
@@ -33,28 +33,28 @@ count = 5
 """
 
 
-def study_of(folder: Path, text: str, *changes: str) -> Study:
+def sweep_of(folder: Path, text: str, *changes: str) -> Sweep:
     """Return the study that a text describes."""
     path = folder / "study.toml"
     path.write_text(text, encoding="utf-8")
-    return read_study(path, changes)
+    return read_sweep(path, changes)
 
 
-def work_off(work: SweepWork, study: Study, most: int | None = None) -> list[Piece]:
+def work_off(work: SweepWork, sweep: Sweep, most: int | None = None) -> list[SweepTask]:
     """Do so many pieces of a study in this process, all by default; return them."""
-    each = line if study.whole_lines else points
-    pieces: list[Piece] = []
-    while (most is None or len(pieces) < most) and (piece := work.take()) is not None:
-        work.take_back(piece, each(study.dump(), piece.numbers)[1])
-        pieces.append(piece)
+    each = row_records if sweep.whole_rows else point_records
+    tasks: list[SweepTask] = []
+    while (most is None or len(tasks) < most) and (task := work.take()) is not None:
+        work.take_back(task, each(sweep.dump(), task.numbers)[1])
+        tasks.append(task)
     work.save()
-    return pieces
+    return tasks
 
 
-def done(study: Study, path: Path, *, retry_failed: bool = False) -> xr.Dataset:
+def done(sweep: Sweep, path: Path, *, retry_failed: bool = False) -> xr.Dataset:
     """Return a study, done in this process."""
-    store = open_study(path, study)
-    work_off(SweepWork(store, retry_failed=retry_failed), study)
+    store = open_sweep(path, sweep)
+    work_off(SweepWork(store, retry_failed=retry_failed), sweep)
     return load_sweep(path).load()
 
 
@@ -68,7 +68,7 @@ def differing(one: xr.Dataset, other: xr.Dataset, but: Sequence[str] = ("seconds
     ]
 
 
-def written_in_order(store: StudyStore, act: Callable[[], object]) -> list[str]:
+def written_in_order(store: SweepStore, act: Callable[[], object]) -> list[str]:
     """Return the variables whose files were written while something was done, in order."""
     before = {path: path.stat().st_mtime_ns for path in store.path.rglob("*") if path.is_file()}
     act()
