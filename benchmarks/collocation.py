@@ -21,7 +21,8 @@ from contenders import page
 from contenders.orbits import Orbit, orbit
 from contenders.windows import instants
 from undula.arrays import Array
-from undula.numerics.integration.system import derivative, derivative_half_bandwidth, residual
+from undula.numerics.integration.matrices import derivative_half_bandwidth
+from undula.numerics.integration.system import derivative, residual
 from undula.numerics.linalg.banded import to_dense
 from undula.numerics.orbits.radau import Radau, interpolation, radau
 

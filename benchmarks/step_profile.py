@@ -27,20 +27,15 @@ from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.simulation import Simulation
 from undula.jit.compilation import FASTMATH
 from undula.numerics.integration import stepper_state as names
-from undula.numerics.integration.system import (
+from undula.numerics.integration.matrices import (
     factor,
-    matrix,
     planar_factor,
-    planar_matrix,
     planar_solve,
     planar_structure_of,
-    plane,
-    rates,
-    residual,
-    rotate,
     solve,
     structure_of,
 )
+from undula.numerics.integration.system import matrix, planar_matrix, plane, rates, residual, rotate
 from undula.numerics.integration.time_loop import advance
 from undula.numerics.linalg.banded import Structure, filled
 

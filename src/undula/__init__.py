@@ -1,8 +1,9 @@
 """undula: elastic microfilaments in viscous fluid under axial follower forces.
 
-Build a model (`Filament` and a load), give it a start, and `integrate`, or solve for what it ends
-in with `find_spinning` and `find_flapping`; see docs/index.md.
-Each name is imported when it is first asked for, so that the command line answers at once.
+Build a model (`Filament` or `Chain`, with a load), choose an initial state, and `integrate` it; or
+solve for its states directly with `find_spinning` and `find_flapping`. See docs/index.md.
+
+Each name is imported at its first use, so that the command line starts quickly.
 """
 
 import warnings
@@ -37,8 +38,9 @@ if TYPE_CHECKING:
     from undula.models.chain import Chain
     from undula.models.filament import Filament
     from undula.models.initial_states import from_state, helix, kicked, mode, planar, straight
-    from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+    from undula.models.loads.analytic import LinearLoad, Load, PointLoad, TipLoad
     from undula.models.loads.beads import BeadLoad
+    from undula.models.loads.power import PowerLoad
     from undula.models.loads.user_density import ProfileLoad, TableLoad
     from undula.models.natural_curvature import CurvatureTable
     from undula.models.scales import Scales
@@ -47,7 +49,7 @@ if TYPE_CHECKING:
     from undula.storage.unchecked import StoredWarning
     from undula.sweeps.store import load_sweep
 
-_HOMES = {
+_MODULE_OF = {
     "BeadLoad": "undula.models.loads.beads",
     "Chain": "undula.models.chain",
     "CurvatureTable": "undula.models.natural_curvature",
@@ -59,7 +61,7 @@ _HOMES = {
     "Load": "undula.models.loads.analytic",
     "Periodic": "undula.analysis.states.periodic_record",
     "PointLoad": "undula.models.loads.analytic",
-    "PowerLoad": "undula.models.loads.analytic",
+    "PowerLoad": "undula.models.loads.power",
     "ProfileLoad": "undula.models.loads.user_density",
     "Run": "undula.analysis.runs.run",
     "Scales": "undula.models.scales",
@@ -100,7 +102,7 @@ _HOMES = {
     "threshold_curve": "undula.analysis.solvers.thresholds",
 }
 
-_ROOMS = {"observables": "undula.analysis.observables.shapes", "views": "undula.views"}
+_SUBMODULES = {"observables": "undula.analysis.observables.shapes", "views": "undula.views"}
 
 __all__ = [
     "BeadLoad",
@@ -158,7 +160,7 @@ __all__ = [
 ]
 
 
-#: Names of earlier versions, which go with the next one.
+#: Names of the previous version and their new names; the next version drops them.
 _RENAMED = {
     "births": "criticality",
     "converged": "extrapolate",
@@ -178,11 +180,11 @@ def __getattr__(name: str) -> Any:
         message = f"undula.{name} is now undula.{new}; the old name goes with the next release"
         warnings.warn(message, DeprecationWarning, stacklevel=2)
         return __getattr__(new)
-    if name in _ROOMS:
-        return import_module(_ROOMS[name])
-    if name not in _HOMES:
+    if name in _SUBMODULES:
+        return import_module(_SUBMODULES[name])
+    if name not in _MODULE_OF:
         raise AttributeError(f"module 'undula' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+    return getattr(import_module(_MODULE_OF[name]), name)
 
 
 def __dir__() -> list[str]:

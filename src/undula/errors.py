@@ -1,4 +1,4 @@
-"""The one exception for mistakes that a user can put right."""
+"""The exception for mistakes in the input, which the user can correct."""
 
 import math
 from numbers import Real
@@ -6,17 +6,37 @@ from typing import Any
 
 
 class InputError(ValueError):
-    """A mistake in the input, told in one sentence that names the culprit and the cure.
+    """A mistake in the input, with a message that names the value and the cure.
 
-    Whatever faces the user shows the text of this exception as it is, without a traceback.
+    The command line shows the message as it is, without a traceback.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> try:
+    ...     un.PointLoad(75.0, position=1.5)
+    ... except un.InputError as error:
+    ...     print(error)
+    PointLoad: position = 1.5 has to be a number in (0, 1]
     """
 
 
 def is_number(value: Any) -> bool:
-    """Tell whether a value is a finite real number, which true, false and texts are not."""
+    """Return whether a value is a finite real number.
+
+    Parameters
+    ----------
+    value : object
+        Any value; booleans and texts are no numbers.
+
+    Returns
+    -------
+    bool
+        True for a finite real number.
+    """
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
     try:
         return math.isfinite(value)
     except OverflowError:
-        return False  # a whole number beyond what a float holds
+        return False  # an integer beyond the range of floats

@@ -1,4 +1,4 @@
-"""Signals that ask a program to end: Ctrl-C, and what batch systems and closed terminals send."""
+"""Signals that ask a program to end: Ctrl-C, and those of batch systems and closed terminals."""
 
 import signal
 import threading
@@ -8,34 +8,33 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-#: Ctrl-C, the polite request of `kill`, of time limits and batch systems, and a terminal's end.
-ENDINGS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-#: Seconds in which a signal that comes again is the same request: some are sent to a process and
-#: once more to its group.
-_SAME = 1.0
+#: Signals of Ctrl-C, of `kill`, time limits and batch systems, and of a closed terminal.
+END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+#: Time in which a repeated signal is the same request [s]: some signals are sent to a process and
+#: again to its group.
+_SAME_REQUEST = 1.0
 
 
 @contextmanager
-def endings_heard() -> Iterator[None]:
-    """Have all these signals raise KeyboardInterrupt in this block, as Ctrl-C does by itself.
+def end_signals_raise() -> Iterator[None]:
+    """Let all `END_SIGNALS` raise KeyboardInterrupt in a block, as Ctrl-C does by default.
 
-    One that was to be ignored when the program was started, as by ``nohup``, stays ignored; so does
-    one for which the program has done something of its own.
+    A signal that is ignored, as by ``nohup``, or that has another handler, is left alone.
     """
     changed = []
     if threading.current_thread() is threading.main_thread():
-        changed = [one for one in ENDINGS if signal.getsignal(one) is signal.SIG_DFL]
-    for one in changed:
-        signal.signal(one, signal.default_int_handler)
+        changed = [signum for signum in END_SIGNALS if signal.getsignal(signum) is signal.SIG_DFL]
+    for signum in changed:
+        signal.signal(signum, signal.default_int_handler)
     try:
         yield
     finally:
-        for one in changed:
-            signal.signal(one, signal.SIG_DFL)
+        for signum in changed:
+            signal.signal(signum, signal.SIG_DFL)
 
 
-class _Note:
-    """Notes a signal; one that comes later, too, raises KeyboardInterrupt."""
+class _Recorder:
+    """Handler that records the first signal, and raises KeyboardInterrupt at a later one."""
 
     def __init__(self, since: float | None) -> None:
         self.since = since
@@ -44,35 +43,42 @@ class _Note:
         now = time.monotonic()
         if self.since is None:
             self.since = now
-        elif now - self.since > _SAME:
+        elif now - self.since > _SAME_REQUEST:
             signal.default_int_handler(signum, frame)
 
 
 @contextmanager
 def interruptible() -> Iterator[Callable[[], bool]]:
-    """Note a signal instead of raising KeyboardInterrupt amid a step; a second one does raise.
+    """Record a signal in a block instead of raising KeyboardInterrupt; a second signal raises it.
 
-    Of the signals these are noted that would raise it: Ctrl-C, and in a program that is within
-    `endings_heard` the others. A block within another knows what that
-    one has noted, and tells it at its end what it has noted itself.
+    Recorded are the signals that would raise it: Ctrl-C, and the others within `end_signals_raise`.
+    Nested blocks share what they have recorded. In threads other than the main thread nothing is
+    recorded.
+
+    Yields
+    ------
+    callable
+        Returns True once a signal was recorded.
     """
     if threading.current_thread() is not threading.main_thread():
         yield lambda: False
         return
-    before = {one: signal.getsignal(one) for one in ENDINGS}
-    outer = [handler for handler in before.values() if isinstance(handler, _Note)]
-    note = _Note(next((one.since for one in outer if one.since is not None), None))
-    heard = {one: handler for one, handler in before.items() if _raises(handler)}
-    for one in heard:
-        signal.signal(one, note)
+    before = {signum: signal.getsignal(signum) for signum in END_SIGNALS}
+    outer = [handler for handler in before.values() if isinstance(handler, _Recorder)]
+    recorder = _Recorder(
+        next((handler.since for handler in outer if handler.since is not None), None)
+    )
+    recorded = {signum: handler for signum, handler in before.items() if _raises(handler)}
+    for signum in recorded:
+        signal.signal(signum, recorder)
     try:
-        yield lambda: note.since is not None
+        yield lambda: recorder.since is not None
     finally:
-        for one, handler in heard.items():
-            signal.signal(one, handler)
-            if isinstance(handler, _Note) and handler.since is None:
-                handler.since = note.since
+        for signum, handler in recorded.items():
+            signal.signal(signum, handler)
+            if isinstance(handler, _Recorder) and handler.since is None:
+                handler.since = recorder.since
 
 
 def _raises(handler: Any) -> bool:
-    return handler is signal.default_int_handler or isinstance(handler, _Note)
+    return handler is signal.default_int_handler or isinstance(handler, _Recorder)

@@ -13,7 +13,7 @@ import pytest
 
 import undula as un
 from commands import Ask, answer, ended, in_process, started
-from undula.interrupts import ENDINGS, endings_heard, interruptible
+from undula.interrupts import END_SIGNALS, end_signals_raise, interruptible
 from undula.storage.ramp_file import load_ramp
 from undula.storage.run_file import load_result
 from undula.terminal.output import INTERRUPTED
@@ -26,14 +26,14 @@ from undula.terminal import meter
 meter.SECONDS_BETWEEN_LINES = 0.0
 sys.exit(cli.main())
 """
-each_signal = pytest.mark.parametrize("ending", ENDINGS, ids=lambda one: one.name)
+each_signal = pytest.mark.parametrize("ending", END_SIGNALS, ids=lambda one: one.name)
 
 
 @pytest.fixture(autouse=True)
 def _handlers_stay_as_they_are() -> Iterator[None]:
-    before = {one: signal.getsignal(one) for one in ENDINGS}
+    before = {one: signal.getsignal(one) for one in END_SIGNALS}
     yield
-    assert {one: signal.getsignal(one) for one in ENDINGS} == before
+    assert {one: signal.getsignal(one) for one in END_SIGNALS} == before
 
 
 def sends(ending: signal.Signals, times: int = 1) -> Any:
@@ -52,14 +52,14 @@ def sends(ending: signal.Signals, times: int = 1) -> Any:
 @each_signal
 def test_every_signal_ends_a_run_with_what_it_has(ending: signal.Signals) -> None:
     model = un.Filament(4, un.TipLoad(50.0))
-    with endings_heard():
+    with end_signals_raise():
         run = un.integrate(model, un.kicked(model), until=50.0, progress=sends(ending))
     assert run.ending.value == "interrupted"
 
 
 @each_signal
 def test_a_signal_that_is_sent_twice_at_once_is_one_request(ending: signal.Signals) -> None:
-    with endings_heard(), interruptible() as interrupted:
+    with end_signals_raise(), interruptible() as interrupted:
         sends(ending, times=2)()
         assert interrupted()
 
@@ -68,10 +68,10 @@ def test_a_signal_that_is_sent_twice_at_once_is_one_request(ending: signal.Signa
 def test_a_later_signal_ends_at_once(
     ending: signal.Signals, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("undula.interrupts._SAME", 0.0)
+    monkeypatch.setattr("undula.interrupts._SAME_REQUEST", 0.0)
 
     def twice() -> None:
-        with endings_heard(), interruptible():
+        with end_signals_raise(), interruptible():
             sends(ending, times=2)()
 
     with pytest.raises(KeyboardInterrupt):
@@ -79,7 +79,7 @@ def test_a_later_signal_ends_at_once(
 
 
 def test_a_block_within_another_knows_and_tells_what_was_noted() -> None:
-    with endings_heard(), interruptible() as outer:
+    with end_signals_raise(), interruptible() as outer:
         with interruptible() as inner:
             signal.raise_signal(signal.SIGTERM)
             assert inner()
@@ -93,7 +93,7 @@ def test_what_was_to_be_ignored_stays_ignored() -> None:
     # As nohup has it.
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
-        with endings_heard(), interruptible() as interrupted:
+        with end_signals_raise(), interruptible() as interrupted:
             signal.raise_signal(signal.SIGHUP)
             assert not interrupted()
     finally:
@@ -104,7 +104,7 @@ def test_a_program_that_uses_the_package_keeps_its_own_ways() -> None:
     heard: list[int] = []
     before = signal.signal(signal.SIGTERM, lambda number, _: heard.append(number))
     try:
-        with endings_heard(), interruptible() as interrupted:
+        with end_signals_raise(), interruptible() as interrupted:
             signal.raise_signal(signal.SIGTERM)
             assert heard == [signal.SIGTERM]
             assert not interrupted()

@@ -36,9 +36,9 @@ def beyond(x):
 """
 SHOW = """
 import numpy as np
-from toy.jit.cache import trouble
+from toy.jit.cache import why_not_kept
 from toy.outer import outer
-print(outer(np.ones(3)), sum(outer.stats.cache_hits.values()), trouble())
+print(outer(np.ones(3)), sum(outer.stats.cache_hits.values()), why_not_kept())
 """
 #: What a process prints that computes, and finds the function on disk or not.
 FOUND, MADE = "2.0 1 None", "2.0 0 None"
@@ -106,7 +106,7 @@ def plus_two(x: float) -> float:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Let functions be kept in a folder of their own, and no trouble be known."""
     monkeypatch.setattr(cache, "_folder", lambda _: str(tmp_path))
-    monkeypatch.setattr(cache, "_troubles", [])
+    monkeypatch.setattr(cache, "_reasons", [])
     return tmp_path
 
 
@@ -126,7 +126,7 @@ def test_a_damaged_file_is_compiled_anew_and_is_whole_again(
     path.write_bytes(damage(path.read_bytes()))
     assert called(plus_one) == (2.0, False)
     assert called(plus_one) == (2.0, True)
-    assert cache.trouble() is None
+    assert cache.why_not_kept() is None
 
 
 def test_a_file_of_another_function_is_not_taken_for_this_one(folder: Path) -> None:
@@ -147,7 +147,7 @@ def test_a_full_disk_costs_the_file_and_not_the_answer(
     monkeypatch.setattr(os, "replace", full)
     assert called(plus_one) == (2.0, False)
     assert list(folder.iterdir()) == []
-    told = cache.trouble()
+    told = cache.why_not_kept()
     assert told is not None
     assert "No space left on device" in told
     assert "NUMBA_CACHE_DIR" in told
@@ -235,7 +235,7 @@ def test_the_command_line_says_one_sentence(
     before: str | None, after: str | None, said: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     troubles, heard = iter([before, after]), list[str]()
-    monkeypatch.setattr(compiling, "trouble", lambda: next(troubles))
+    monkeypatch.setattr(compiling, "why_not_kept", lambda: next(troubles))
     with compiling.compilation_announced(heard.append), event.trigger_event("numba:compile"):
         pass
     assert heard == said

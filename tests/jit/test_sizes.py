@@ -14,14 +14,15 @@ from numba.core.dispatcher import Dispatcher
 import undula
 import undula.models.rod.sizes as _registers  # noqa: F401
 from undula.arrays import Array
-from undula.jit.sizes import Declared, declared
+from undula.jit.sizes import DeclaredArray, parse_declaration
 from undula.models.chain import Chain
 from undula.models.filament import Filament
 from undula.models.loads.analytic import TipLoad
 from undula.models.rod.tables import RODS
+from undula.numerics.integration.matrices import derivative_width, matrix_width
 from undula.numerics.integration.step import Options
 from undula.numerics.integration.stepper_state import StepperState
-from undula.numerics.integration.system import belongs, derivative_width, matrix_width
+from undula.numerics.integration.system import sizes_match
 
 LOAD = TipLoad(50.0)
 #: One body of each kind of rod.
@@ -73,8 +74,8 @@ OF_SYSTEMS = [
 ]
 
 
-def arrays_of(name: str) -> tuple[Declared, ...]:
-    return declared(entries()[name].py_func.sizes)
+def arrays_of(name: str) -> tuple[DeclaredArray, ...]:
+    return parse_declaration(entries()[name].py_func.sizes)
 
 
 def some(shape: list[int], holds: str) -> Array:
@@ -97,11 +98,11 @@ def given(name: str, system: Any, other: dict[str, Array] | None = None) -> tupl
         sizes["b"] = 1  # one shape beside many
     for array in arrays_of(name):
         shape = [eval(size, {}, NUMBERS | sizes) for size in array.sizes]
-        filled[array.name] = some(shape, array.holds)
+        filled[array.name] = some(shape, array.dtype)
         # As models have them; what can be written would be compiled anew.
         filled[array.name].setflags(write=array.name != "weights")
-    if "memory.count" in filled:
-        filled["memory.count"][:] = 1
+    if "stepper.count" in filled:
+        filled["stepper.count"][:] = 1
     filled |= other or {}
 
     def record(kind: Any, called: str, numbers: dict[str, Any]) -> Any:
@@ -110,8 +111,8 @@ def given(name: str, system: Any, other: dict[str, Array] | None = None) -> tupl
 
     tolerances = {"rtol": 1.0, "atol": 1.0, "stale_after": 1.0, "longest_step": 1.0, "frame": 0}
     made = NUMBERS | filled | {"system": system}
-    if "memory.count" in filled:
-        made["memory"] = record(StepperState, "memory.", {})
+    if "stepper.count" in filled:
+        made["stepper"] = record(StepperState, "stepper.", {})
         made["options"] = record(Options, "options.", tolerances)
     return tuple(made[argument] for argument in inspect.signature(function).parameters)
 
@@ -134,7 +135,7 @@ def wrong_sizes(name: str, system: Any) -> Iterator[tuple[str, Array]]:
                 continue
             for length in (shape[axis] + 1, shape[axis] - 1, 0):
                 wrong = [*shape[:axis], length, *shape[axis + 1 :]]
-                yield array.name, some(wrong, array.holds)
+                yield array.name, some(wrong, array.dtype)
 
 
 def test_there_are_entry_points_and_each_declares_its_arrays() -> None:
@@ -166,7 +167,7 @@ def test_an_entry_point_refuses_numbers_of_another_type(name: str) -> None:
         )
         owner, _, own = array.name.partition(".")
         whole = getattr(fitting[owner], own) if own else fitting[owner]
-        for other in {np.float32, np.float64, np.int64} - {TYPES[array.holds]}:
+        for other in {np.float32, np.float64, np.int64} - {TYPES[array.dtype]}:
             with pytest.raises(ValueError, match="not fit"):
                 function(*given(name, system, {array.name: whole.real.astype(other)}))
 
@@ -193,13 +194,13 @@ def test_there_is_a_body_of_each_kind_of_rod() -> None:
 def test_the_tables_of_a_rod_have_to_fit_one_another(body: Any) -> None:
     system = body.system
     n = type(system).stride * 4
-    assert belongs(system, n)
-    assert not belongs(system, n + 1)
-    assert not belongs(system, 0)
+    assert sizes_match(system, n)
+    assert not sizes_match(system, n + 1)
+    assert not sizes_match(system, 0)
     for name, table in system._asdict().items():
         if isinstance(table, np.ndarray):
-            assert not belongs(system._replace(**{name: table[:-1]}), n)
-            assert not belongs(system._replace(**{name: np.concatenate([table, table])}), n)
+            assert not sizes_match(system._replace(**{name: table[:-1]}), n)
+            assert not sizes_match(system._replace(**{name: np.concatenate([table, table])}), n)
 
 
 @pytest.mark.parametrize("count", [0, 6])
@@ -208,7 +209,7 @@ def test_a_memory_of_an_order_that_it_has_no_differences_for_is_refused(count: i
     counts = np.ones(12, np.int64)
     counts[1] = count
     with pytest.raises(ValueError, match="not fit"):
-        entries()[name](*given(name, system, {"memory.count": counts}))
+        entries()[name](*given(name, system, {"stepper.count": counts}))
 
 
 def test_places_outside_of_an_array_are_refused() -> None:
@@ -228,4 +229,4 @@ def test_an_array_with_gaps_is_read_as_what_it_is() -> None:
 
 def test_a_declaration_that_is_none_is_refused() -> None:
     with pytest.raises(ValueError, match="declares no arrays"):
-        declared("y of n")
+        parse_declaration("y of n")

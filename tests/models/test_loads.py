@@ -14,7 +14,8 @@ import naive
 from cases import every_load
 from refusal import complaint
 from undula.arrays import Points
-from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, TipLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import ProfileLoad, TableLoad
 
 

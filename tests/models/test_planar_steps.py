@@ -15,7 +15,7 @@ from undula.models import initial_states as starts
 from undula.models.filament import Filament
 from undula.models.loads.analytic import TipLoad
 from undula.numerics.integration.stepper_state import PLANAR, STEPS
-from undula.numerics.integration.system import plane, size
+from undula.numerics.integration.system import error_norm, plane
 
 #: Beats in a plane are stable in space.
 FLAPPING = Filament(12, TipLoad(200.0))
@@ -27,8 +27,8 @@ def nearest_plane(system: Any, y: Any, w: Any) -> Any:
 
 
 @uncached
-def size_of(system: Any, vector: Any, mask: Any) -> Any:
-    return size(system, vector, mask)
+def norm_of(system: Any, vector: Any, mask: Any) -> Any:
+    return error_norm(system, vector, mask)
 
 
 @pytest.mark.parametrize("azimuth", [-1.2, 0.0, 0.7, 1.5])
@@ -53,7 +53,7 @@ def test_how_far_a_state_or_its_change_is_off_its_plane_is_the_size_of_that(part
     else:
         w = w + across.ravel()
     azimuth, off = nearest_plane(model.system, y, w)
-    size = size_of(model.system, across.ravel(), model.position_mask)
+    size = norm_of(model.system, across.ravel(), model.position_mask)
     if part == "change":
         assert off == pytest.approx(size, rel=1e-14)
     # The plane turns to where the least is left.

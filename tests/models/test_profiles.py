@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from refusal import complaint
 from undula.arrays import Points
 from undula.models.filament import Filament
-from undula.models.loads.analytic import LinearLoad, Load, PowerLoad
+from undula.models.loads.analytic import LinearLoad, Load
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import ProfileLoad, TableLoad
 
 S = np.linspace(0.0, 1.0, 1001)

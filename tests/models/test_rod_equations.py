@@ -24,7 +24,7 @@ from undula.arrays import Array
 from undula.models import initial_states as starts
 from undula.models.filament import Filament
 from undula.models.loads.analytic import Load
-from undula.numerics.integration.system import size
+from undula.numerics.integration.system import error_norm
 
 BENDS = [0.3, 1.0, 2.0]
 every_bend = pytest.mark.parametrize("bend", BENDS)
@@ -220,8 +220,8 @@ def test_moves_within_the_plane_cause_no_motion_out_of_it_not_even_round_off(
 
 
 @uncached
-def size_of(system: Any, vector: Any, mask: Any) -> Any:
-    return size(system, vector, mask)
+def norm_of(system: Any, vector: Any, mask: Any) -> Any:
+    return error_norm(system, vector, mask)
 
 
 @every_form
@@ -230,7 +230,7 @@ def test_the_size_of_a_change_is_that_of_the_tangents(form: Form) -> None:
     change = np.random.default_rng(8).normal(size=model.position_mask.size)
     links = np.diff(model.positions(change).reshape(model.segments, -1), axis=0, prepend=0.0)
     expected = np.sqrt(np.sum((links * model.segments) ** 2) / model.segments)
-    assert size_of(model.system, change, model.position_mask) == pytest.approx(expected, rel=1e-14)
+    assert norm_of(model.system, change, model.position_mask) == pytest.approx(expected, rel=1e-14)
 
 
 def flat_shape(model: Filament) -> Array:

@@ -21,17 +21,14 @@ from undula.models import initial_states as starts
 from undula.models.filament import Filament
 from undula.models.loads.analytic import Load
 from undula.models.rod.newton_matrix import exact_derivative
-from undula.numerics.integration.system import (
+from undula.numerics.integration.matrices import (
     factor,
-    generator,
-    matrix,
     planar_factor,
-    planar_matrix,
     planar_solve,
-    residual,
     solve,
     structure_of,
 )
+from undula.numerics.integration.system import generator, matrix, planar_matrix, residual
 from undula.numerics.linalg.banded import to_dense
 
 every_rigid_form = pytest.mark.parametrize("form", RIGID_FORMS, ids=str)

@@ -6,9 +6,9 @@ import pytest
 from undula.models.rod.tables import PlanarRod, SpatialRod
 from undula.numerics.linalg.banded import (
     Structure,
-    blank_kernel,
+    clear_kernel,
     factor_kernel,
-    filled,
+    fill_in,
     full,
     solve_kernel,
     to_dense,
@@ -115,7 +115,7 @@ def test_what_the_structure_leaves_zero_is_neither_read_nor_written() -> None:
     structure, half = SpatialRod.structure, SpatialRod.half_bandwidth
     band = structured_band(structure, 12, np.random.default_rng(6))
     left_out = np.ones((4, 2 * half + 1), dtype=bool)
-    for row, (lower, upper) in enumerate(filled(structure)):
+    for row, (lower, upper) in enumerate(fill_in(structure)):
         for shift, column in [*lower, (0, row), *upper]:
             left_out[row, 4 * shift + column - row + half] = False
     assert left_out.sum() == 4 * 17 - 4 - 54  # 54 of the 64 entries beside the diagonal fill
@@ -133,12 +133,12 @@ def test_what_is_going_to_fill_in_is_blanked_and_nothing_else(name: str) -> None
     block, half = structure.block, structure.half_bandwidth
     band = given.normal(size=(3 * block, 2 * half + 1))
     expected = band.copy()
-    for row, (lower, upper) in enumerate(filled(structure)):
+    for row, (lower, upper) in enumerate(fill_in(structure)):
         for shift, column in {*lower, *upper}:
             if (row, shift, column) not in structure.entries:
                 expected[block + row, block * shift + column - row + half] = 0.0
     assert (expected == 0.0).any()
-    blank_kernel(structure)(band, block)
+    clear_kernel(structure)(band, block)
     np.testing.assert_array_equal(band, expected)
 
 
@@ -146,7 +146,7 @@ def test_apart_in_and_across_a_plane_there_is_a_third_of_the_work() -> None:
     # Multiplications with subtraction in the elimination of a node.
     work = {
         name: sum(len(rows[c][1]) for lower, _ in rows for _, c in lower)
-        for name, rows in ((name, filled(structure)) for name, structure in STRUCTURES.items())
+        for name, rows in ((name, fill_in(structure)) for name, structure in STRUCTURES.items())
     }
     assert work["in a plane"] == work["confined"] + 4
     assert work["in space"] / work["in a plane"] > 2.5

@@ -32,7 +32,7 @@ def random_null_vector(rows: int, rng: np.random.Generator) -> Array:
 
 
 def assert_solves_like_numpy(
-    band: Array, borders: int, rng: np.random.Generator, soft: int | None = None
+    band: Array, borders: int, rng: np.random.Generator, shifted: int | None = None
 ) -> None:
     n, q = band.shape[0], borders
     columns, rows, corner = (rng.normal(size=size) for size in ((n, q), (q, n), (q, q)))
@@ -45,7 +45,7 @@ def assert_solves_like_numpy(
         ]
     )
     expected = np.linalg.solve(dense, np.append(right, -1.3))
-    linear = BorderedBand(band, columns, rows, corner, soft)
+    linear = BorderedBand(band, columns, rows, corner, shifted)
     x, y = linear.solve(column, row, 0.7, right, -1.3)
     assert x.shape == (n + q,)
     # Condition numbers of up to 1e5 leave this of sixteen digits.
@@ -82,7 +82,7 @@ def test_a_singular_band_is_solved_where_its_null_vector_is_known(
     vector = random_null_vector(rows, rng)
     band = with_null_vector(random_band(rows, half, rng), vector)
     assert np.linalg.matrix_rank(to_dense(band)) == rows - 1
-    assert_solves_like_numpy(band, borders, rng, soft=int(np.argmax(np.abs(vector))))
+    assert_solves_like_numpy(band, borders, rng, shifted=int(np.argmax(np.abs(vector))))
 
 
 @pytest.mark.parametrize("distance", [1e-4, 1e-8, 1e-12, 0.0])
@@ -91,19 +91,19 @@ def test_no_digit_is_lost_on_the_way_to_a_singular_band(distance: float) -> None
     vector = random_null_vector(40, rng)
     band = with_null_vector(random_band(40, 4, rng), vector)
     band[:, 4] += distance
-    assert_solves_like_numpy(band, 1, rng, soft=int(np.argmax(np.abs(vector))))
+    assert_solves_like_numpy(band, 1, rng, shifted=int(np.argmax(np.abs(vector))))
 
 
 def test_a_regular_band_may_be_softened_as_well() -> None:
     rng = np.random.default_rng(3)
-    assert_solves_like_numpy(random_band(20, 2, rng), 1, rng, soft=7)
+    assert_solves_like_numpy(random_band(20, 2, rng), 1, rng, shifted=7)
 
 
 def test_the_matrices_that_were_given_are_left_alone() -> None:
     rng = np.random.default_rng(1)
     given = random_band(9, 2, rng), rng.normal(size=(9, 1)), rng.normal(size=(1, 9)), np.eye(1)
     copies = [matrix.copy() for matrix in given]
-    linear = BorderedBand(*given, soft=4)
+    linear = BorderedBand(*given, shifted=4)
     first = linear.solve(np.ones(10), np.ones(10), 0.0, np.ones(10), 1.0)
     second = linear.solve(np.ones(10), np.ones(10), 0.0, np.ones(10), 1.0)
     for matrix, copy in zip(given, copies, strict=True):
@@ -122,4 +122,4 @@ def test_a_pivot_that_vanishes_is_an_error(row: int) -> None:
         BorderedBand(band, np.ones((9, 1)), np.ones((1, 9)), np.zeros((1, 1)))
     # Softened there it is regular.
     band[row, 1 if row else 3] = 1.0
-    BorderedBand(band, np.ones((9, 1)), np.ones((1, 9)), np.zeros((1, 1)), soft=row)
+    BorderedBand(band, np.ones((9, 1)), np.ones((1, 9)), np.zeros((1, 1)), shifted=row)

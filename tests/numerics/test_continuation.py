@@ -14,11 +14,11 @@ from undula.numerics.continuation.arclength import (
     Point,
     Steps,
     advance,
-    follow,
-    located,
-    solved_at,
+    solve_at,
+    trace,
     with_tangent,
 )
+from undula.numerics.continuation.locate import locate
 from undula.numerics.continuation.problem import DenseLinear, Evaluation
 
 EVERYWHERE = (-np.inf, np.inf)
@@ -46,7 +46,7 @@ class Curve:
         matrix = np.array([[by_u, 0.0], [-2.0 * u[0], 1.0]])
         return Evaluation(residual, DenseLinear(matrix), np.array([by_p, 0.0]))
 
-    def referred_to(self, u: Array) -> Self:  # noqa: ARG002
+    def with_reference(self, u: Array) -> Self:  # noqa: ARG002
         return self
 
     def at(self, u: float, p: float, upwards: float = 1.0, scale: float = 1.0) -> Point:
@@ -79,7 +79,7 @@ def cube(u: float) -> float:
 
 
 def followed(curve: Curve, start: Point, ends: tuple[float, float], **steps: float) -> list[Point]:
-    points = [start, *islice(follow(curve, start, Steps(**steps), ends), 500)]
+    points = [start, *islice(trace(curve, start, Steps(**steps), ends), 500)]
     for point in points:
         # Newton's method ends at round-off.
         assert abs(curve.function(point.u[0], point.p)) < 1e-13
@@ -89,7 +89,7 @@ def followed(curve: Curve, start: Point, ends: tuple[float, float], **steps: flo
 
 def folds(curve: Curve, points: list[Point], scale: float = 1.0) -> list[Point]:
     pairs = [pair for pair in pairwise(points) if pair[0].tangent_p * pair[1].tangent_p < 0.0]
-    found = [located(curve, *pair, lambda point: point.tangent_p, scale, 1e-9) for pair in pairs]
+    found = [locate(curve, *pair, lambda point: point.tangent_p, scale, 1e-9) for pair in pairs]
     assert None not in found
     return [point for point in found if point is not None]
 
@@ -185,7 +185,7 @@ def test_a_step_onto_a_pitchfork_itself_is_a_failure_that_is_got_over(first: flo
 def test_a_zero_at_a_branch_point_is_located_beside_it() -> None:
     curve = pitchfork()
     one, other = curve.at(0.0, -1.0), curve.at(0.0, 1.0)
-    found = located(curve, one, other, lambda point: point.p, 1.0, 1e-9)
+    found = locate(curve, one, other, lambda point: point.p, 1.0, 1e-9)
     assert found is not None
     assert abs(found.p) <= 2e-9
 
@@ -241,8 +241,8 @@ def test_a_domain_is_not_left_and_leaving_it_is_no_exception() -> None:
     # The last step tried was shorter than 1e-6.
     assert 0.3 <= points[-1].u[0] < 0.3 + 1e-5
     assert points[-1].p > 0.0
-    assert solved_at(curve, np.array([0.5, 0.25]), 0.04) is None
-    assert solved_at(curve, np.array([0.1, 0.01]), 0.04) is None
+    assert solve_at(curve, np.array([0.5, 0.25]), 0.04) is None
+    assert solve_at(curve, np.array([0.1, 0.01]), 0.04) is None
     assert advance(curve, curve.at(1.0, 1.0, -1.0), 5.0, 1.0) is None
 
 
@@ -253,15 +253,15 @@ def test_an_end_outside_the_domain_is_not_reached() -> None:
 
 
 def test_what_is_singular_has_no_solution() -> None:
-    assert solved_at(fold(), np.zeros(2), 1.0) is None
-    assert solved_at(fold(), np.array([0.3, 0.0]), -1.0) is None
+    assert solve_at(fold(), np.zeros(2), 1.0) is None
+    assert solve_at(fold(), np.array([0.3, 0.0]), -1.0) is None
 
 
 @pytest.mark.parametrize("place", [-0.31, 0.0, 0.2, 0.77])
 def test_a_zero_of_a_test_function_is_located(place: float) -> None:
     curve = cubic()
     one, other = curve.at(place - 0.2, cube(place - 0.2)), curve.at(place + 0.2, cube(place + 0.2))
-    found = located(curve, one, other, lambda point: np.sinh(point.u[0] - place), 1.0, 1e-9)
+    found = locate(curve, one, other, lambda point: np.sinh(point.u[0] - place), 1.0, 1e-9)
     assert found is not None
     # The zero is located in arclength, of which u takes a part.
     assert found.u[0] == pytest.approx(place, abs=1e-9)
@@ -278,7 +278,7 @@ def test_a_test_function_is_asked_for_once_at_each_point() -> None:
         # As of an exponent that round-off has spoilt: another sign when asked again.
         return float(point.u[0]) * (-1.0) ** (asked.count(point.u[0]) - 1)
 
-    found = located(curve, one, other, fickle, 1.0, 1e-9)
+    found = locate(curve, one, other, fickle, 1.0, 1e-9)
     assert found is not None
     assert found.u[0] == pytest.approx(0.0, abs=1e-9)
     assert len(asked) == len(set(asked))
@@ -287,7 +287,7 @@ def test_a_test_function_is_asked_for_once_at_each_point() -> None:
 def test_a_test_function_without_a_value_has_no_zero() -> None:
     curve = cubic()
     one, other = curve.at(-0.2, cube(-0.2)), curve.at(0.2, cube(0.2))
-    assert located(curve, one, other, lambda _: np.nan, 1.0, 1e-9) is None
+    assert locate(curve, one, other, lambda _: np.nan, 1.0, 1e-9) is None
 
 
 def test_the_step_grows_where_it_is_easy_and_never_beyond_the_most() -> None:

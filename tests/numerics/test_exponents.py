@@ -7,7 +7,7 @@ import pytest
 
 from attractors import BETA, SIGMA
 from systems import LORENZ, TORUS, Known, carry_changes
-from undula.numerics.integration.lyapunov import BLOCKS, TURNING_IN, Block, growth, mean_rates
+from undula.numerics.integration.lyapunov import BLOCKS, TRANSIENT_SHARE, Block, growth, mean_rates
 from undula.numerics.integration.schemes import NDF
 from undula.numerics.integration.status import Status
 from undula.numerics.integration.step import options
@@ -101,7 +101,7 @@ def test_the_error_is_the_scatter_of_batches_or_the_drift_between_halves() -> No
     noise = random.normal(size=(BLOCKS, 1))
     steady = [Block(1.0, 1, one, Status.DONE) for one in noise]
     value, error = mean_rates(steady, 0.0)
-    counted = BLOCKS * (1.0 - TURNING_IN)
+    counted = BLOCKS * (1.0 - TRANSIENT_SHARE)
     # From ten batches the scatter is known to a quarter, three times over.
     assert error[0] == pytest.approx(1.0 / np.sqrt(counted), rel=0.75)
     assert abs(value[0]) < ERRORS * error[0]

@@ -27,7 +27,7 @@ def test_multipliers_of_a_row_of_oscillators_are_the_exact_ones(row: Row) -> Non
     # The time error of a period in 60 intervals at order 5, in T as in the rest.
     np.testing.assert_allclose(seen.exponents(orbit.shot.duration).real, row.rates, rtol=1e-7)
     assert np.all(np.diff(np.abs(seen.multipliers)) <= 0.0)
-    assert seen.known_errors[0] < 1e-8
+    assert seen.trivial_errors[0] < 1e-8
 
 
 def test_multipliers_under_a_constraint_are_the_exact_ones() -> None:
@@ -36,12 +36,12 @@ def test_multipliers_under_a_constraint_are_the_exact_ones() -> None:
     assert seen.multipliers.shape == (1,)
     # The time error, as above.
     assert seen.exponents(orbit.shot.duration)[0].real == pytest.approx(Globe().rate, rel=1e-7)
-    assert seen.known_errors[0] < 1e-8
+    assert seen.trivial_errors[0] < 1e-8
 
 
 def test_errors_of_the_trivial_multiplier_fall_at_the_order_of_the_method() -> None:
     counts = [24, 36, 54]
-    errors = [floquet_of(found(search(Globe(), count)).shot).known_errors[0] for count in counts]
+    errors = [floquet_of(found(search(Globe(), count)).shot).trivial_errors[0] for count in counts]
     slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert slope == pytest.approx(5.0, abs=0.15)
 
@@ -52,9 +52,9 @@ def test_a_turning_motion_has_two_trivial_multipliers_and_those_of_its_shape() -
     assert seen.multipliers.shape == (1,)
     rate = seen.exponents(orbit.shot.duration)[0].real
     assert rate == pytest.approx(ride.oscillator.rates[0], rel=1e-7)
-    assert np.all(seen.known_errors < 1e-8)
+    assert np.all(seen.trivial_errors < 1e-8)
     # A rotation is a symmetry of the discrete flow itself, whose derivatives are exact.
-    assert seen.known_errors[1] < 1e-10
+    assert seen.trivial_errors[1] < 1e-10
 
 
 def test_multipliers_of_half_a_period_up_to_a_reflection_are_roots_of_the_full_ones() -> None:
@@ -104,9 +104,9 @@ def test_known_multipliers_may_have_any_value() -> None:
     seen = floquet(matrix, directions, np.array([1.0, -1.0]))
     # Round-off of a matrix of condition number below 100.
     np.testing.assert_allclose(seen.multipliers, [-0.8, 0.3], atol=1e-12)
-    assert np.all(seen.known_errors < 1e-12)
+    assert np.all(seen.trivial_errors < 1e-12)
     wrong = floquet(matrix, directions, np.array([1.0, 1.0]))
-    assert wrong.known_errors[1] == pytest.approx(2.0, abs=1e-12)
+    assert wrong.trivial_errors[1] == pytest.approx(2.0, abs=1e-12)
 
 
 def test_a_multiplier_that_meets_the_trivial_one_loses_no_accuracy() -> None:
@@ -125,7 +125,7 @@ def test_without_known_directions_all_multipliers_are_found() -> None:
     matrix, _ = known([2.0, 0.5, -0.1], 0)
     seen = floquet(matrix, np.zeros((3, 0)), np.zeros(0))
     np.testing.assert_allclose(seen.multipliers, [2.0, 0.5, -0.1], atol=1e-12)
-    assert seen.known_errors.shape == (0,)
+    assert seen.trivial_errors.shape == (0,)
 
 
 def test_what_is_gone_after_an_orbit_has_no_exponent() -> None:
@@ -136,5 +136,5 @@ def test_what_is_gone_after_an_orbit_has_no_exponent() -> None:
 def test_a_motion_that_has_come_to_rest_has_multipliers_and_no_known_error() -> None:
     with np.errstate(all="raise"):
         told = floquet(np.diag([0.5, 0.25]), np.zeros((2, 1)), np.ones(1))
-    assert np.isinf(told.known_errors).all()
+    assert np.isinf(told.trivial_errors).all()
     assert np.isfinite(told.multipliers).all()

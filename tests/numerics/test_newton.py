@@ -24,7 +24,7 @@ class Small:
         residual = self.function(u, p)
         return Evaluation(residual, DenseLinear(self.derivative(u)), np.ones(u.size))
 
-    def referred_to(self, u: Array) -> Self:  # noqa: ARG002
+    def with_reference(self, u: Array) -> Self:  # noqa: ARG002
         return self
 
 

@@ -35,15 +35,15 @@ def test_the_period_is_found_at_the_order_of_the_method(
 
 
 @pytest.mark.parametrize(
-    ("equations", "closure"), [(Row(count=3), EXACT), (Globe(), EXACT), (Carousel(), TURNING)]
+    ("equations", "symmetry"), [(Row(count=3), EXACT), (Globe(), EXACT), (Carousel(), TURNING)]
 )
 def test_newton_s_method_converges_quadratically_also_from_off_the_constraint(
-    equations: Any, closure: OrbitSymmetry
+    equations: Any, symmetry: OrbitSymmetry
 ) -> None:
     times = [equations.period, equations.turning * equations.period]
-    known = [1, 2][closure is TURNING]
+    known = [1, 2][symmetry is TURNING]
     u = near(equations.on_orbit()[equations.differential], *times[:known])
-    result = find_orbit(shooting(equations, 24, closure), u, 0.0)
+    result = find_orbit(shooting(equations, 24, symmetry), u, 0.0)
     assert result.solution is not None
     assert result.solution.converged
     steps = np.array(result.solution.steps)
@@ -161,7 +161,7 @@ def test_orbit_and_period_follow_the_parameter_as_they_should() -> None:
 def test_a_neighbouring_orbit_is_found_from_the_last_with_few_steps() -> None:
     shoot = Shooting(row_of, OrbitSymmetry(), 24)
     orbit = found(find_orbit(shoot, near(row_of(1.0).on_orbit(), row_of(1.0).period), 1.0))
-    problem = orbit.problem.referred_to(orbit.u)
+    problem = orbit.problem.with_reference(orbit.u)
     np.testing.assert_array_equal(problem.reference.x, orbit.u[:-1])
     next_one = newton(problem, orbit.u, 1.01)
     assert next_one.converged

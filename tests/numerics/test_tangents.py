@@ -23,6 +23,7 @@ from systems import (
 from undula.analysis.run_settings import Schedule
 from undula.arrays import Array
 from undula.models.model import Model
+from undula.numerics.integration.matrices import derivative_half_bandwidth
 from undula.numerics.integration.schemes import NDF
 from undula.numerics.integration.status import Status
 from undula.numerics.integration.step import Options
@@ -35,7 +36,6 @@ from undula.numerics.integration.stepper_state import (
     StepperState,
     start,
 )
-from undula.numerics.integration.system import derivative_half_bandwidth
 from undula.numerics.integration.variational import advance_with_changes
 
 FOREVER = np.inf

@@ -23,7 +23,7 @@ from undula.arrays import Array, Points
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
 from undula.models.filament import Filament
-from undula.models.natural_curvature import CurvatureTable, of_pieces
+from undula.models.natural_curvature import CurvatureTable, mean_over_pieces
 from undula.numerics.integration.system import RATES
 from undula.numerics.linalg.banded import to_dense
 from undula.storage.run_file import load_result
@@ -200,7 +200,10 @@ def test_a_filament_without_curvature_is_the_plain_rod_whatever_the_twist() -> N
 
 
 def test_curvature_comes_as_a_pair_a_table_or_a_function() -> None:
-    pair, table = of_pieces((3.0, -2.0), 8), CurvatureTable((0.0, 1.0), (0.0, 2.0), (5.0, 5.0))
+    pair, table = (
+        mean_over_pieces((3.0, -2.0), 8),
+        CurvatureTable((0.0, 1.0), (0.0, 2.0), (5.0, 5.0)),
+    )
 
     def function(s: Points) -> tuple[Points, float]:
         return 2.0 * s, 5.0
@@ -209,7 +212,7 @@ def test_curvature_comes_as_a_pair_a_table_or_a_function() -> None:
     middles = np.array([1 / 32, *np.arange(1, 8) / 8, 31 / 32])
     for given in (table, function):
         expected = np.stack([2.0 * middles, np.full(9, 5.0)], axis=1)
-        np.testing.assert_allclose(of_pieces(given, 8), expected, atol=1e-14)
+        np.testing.assert_allclose(mean_over_pieces(given, 8), expected, atol=1e-14)
     listed = Filament(8, un.TipLoad(1.0), natural_curvature=np.array([3, -2]))  # type: ignore
     assert listed.natural_curvature == (3.0, -2.0)
     assert listed == listed.with_links(9).with_links(8)  # type: ignore[union-attr]

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 
 from refusal import complaint
 from undula.analysis.states.branch_json import read_branch
-from undula.models.loads.analytic import LinearLoad, PowerLoad
+from undula.models.loads.analytic import LinearLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.units import FILAMENT_UNITS, chain_units
 from undula.reproduction.claims.catalogue import Figure as Shown
 from undula.reproduction.claims.catalogue import catalogue

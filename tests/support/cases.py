@@ -7,7 +7,8 @@ import pytest
 
 from undula.arrays import Points, State
 from undula.models.filament import Filament
-from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, TipLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import ProfileLoad, TableLoad
 
 

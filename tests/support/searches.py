@@ -20,9 +20,9 @@ def mirrored(y: Array) -> Array:
 
 
 def shooting(
-    equations: Any, intervals: int, closure: OrbitSymmetry = EXACT, stages: int = 3
+    equations: Any, intervals: int, symmetry: OrbitSymmetry = EXACT, stages: int = 3
 ) -> Shooting:
-    return Shooting(lambda _: equations, closure, intervals, radau(stages))
+    return Shooting(lambda _: equations, symmetry, intervals, radau(stages))
 
 
 def near(y: Array, *times: float) -> Array:

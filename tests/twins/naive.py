@@ -15,7 +15,8 @@ from scipy.integrate import quad
 
 from undula.arrays import Array, Links, State
 from undula.models.filament import Filament
-from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import ProfileLoad, TableLoad
 
 #: A complex step whose square is lost to round-off beside any length.

@@ -16,7 +16,7 @@ from undula.analysis.regimes import names as naming
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
 from undula.inputs.model_tables import ModelTable
-from undula.models.description import model_words
+from undula.models.description import describe_model
 from undula.views import portrait
 from undula.views.common import style
 from undula.views.common.verdict_styles import LOOKS, look_of
@@ -222,17 +222,17 @@ def test_words_tell_every_key_of_the_model_that_departs_from_its_default(key: st
     # A curve over the key leaves its value out, and Python says the same as the command line.
     if not isinstance(value, str):
         assert str(value) not in changed.describe({f"model.{key}"})
-    assert model_words(build_model(changed)) == changed.load_text
+    assert describe_model(build_model(changed)) == changed.load_text
 
 
 def test_a_run_made_in_python_is_titled_in_words() -> None:
     curved = un.Filament(
         segments=4, load=un.TipLoad(60.0), natural_curvature=(1.5, 0.0), twist="paper"
     )
-    assert model_words(curved) == "tip force 60, curvature k1 = 1.5, twist moment left out"
+    assert describe_model(curved) == "tip force 60, curvature k1 = 1.5, twist moment left out"
     filament = un.Filament(4, un.PointLoad(60.0, 0.5))
     stored = un.dataset_of(un.integrate(filament, un.kicked(filament, 0.1), until=0.01))
     title = portrait(stored).texts[0].get_text()
     assert title.startswith("point force 60 at s = 0.5")
     bump = un.ProfileLoad(50.0, lambda s: 1.0 + s)
-    assert model_words(un.Filament(4, bump)) == "spread force 50"
+    assert describe_model(un.Filament(4, bump)) == "spread force 50"

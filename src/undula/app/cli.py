@@ -25,7 +25,7 @@ from undula.app.plot_commands import movie, plot
 from undula.app.reproduce_command import reproduce
 from undula.app.solving_commands import find, follow, stability, threshold
 from undula.app.sweep_commands import status, sweep
-from undula.interrupts import endings_heard
+from undula.interrupts import end_signals_raise
 from undula.terminal.output import INTERRUPTED, interrupted, refuse
 
 # The matrices are small: more threads of the linear algebra would slow it down.
@@ -77,7 +77,7 @@ def _execute(words: Sequence[str]) -> int:
     from undula.terminal.warnings import stored_warnings_noticed
 
     try:
-        with stored_warnings_noticed(), endings_heard():
+        with stored_warnings_noticed(), end_signals_raise():
             status = int(app(words, prog_name="undula", standalone_mode=False) or 0)
         # Typer turns KeyboardInterrupt into this status.
         return interrupted() if status == INTERRUPTED else status

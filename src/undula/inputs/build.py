@@ -13,15 +13,9 @@ from undula.inputs.run_tables import StartTable
 from undula.models.chain import Chain
 from undula.models.filament import Filament
 from undula.models.initial_states import from_state, helix, kicked, mode, planar, straight
-from undula.models.loads.analytic import (
-    DensityLoad,
-    LinearLoad,
-    Load,
-    PointLoad,
-    PowerLoad,
-    TipLoad,
-)
+from undula.models.loads.analytic import DensityLoad, LinearLoad, Load, PointLoad, TipLoad
 from undula.models.loads.beads import BeadLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import TableLoad
 from undula.models.model import Model
 

@@ -17,7 +17,7 @@ from undula.inputs.overrides import apply_overrides, read_toml
 from undula.inputs.run_tables import StabilityTable, StartTable, TimeTable
 from undula.inputs.sweep_table import SweepTable
 from undula.inputs.table import Table, conflict
-from undula.models.description import words
+from undula.models.description import describe
 from undula.models.loads.beads import BeadLoad
 from undula.models.units import FILAMENT_UNITS, chain_units
 
@@ -82,7 +82,7 @@ class ModelInput(Table):
             {name: getattr(table, name) for name in table.dump()}
             for table in (self.model, self.load)
         )
-        return words(body, self.load.profile, load, varied)
+        return describe(body, self.load.profile, load, varied)
 
     def dump(self) -> dict[str, Any]:
         """Return the complete resolved input as plain JSON types.

@@ -10,8 +10,8 @@ from pydantic import BeforeValidator, Field, InstanceOf, PlainSerializer, model_
 
 from undula.errors import InputError
 from undula.inputs.table import OnlyWith, Table, conflict
-from undula.models.chain import MOST_LINKS
-from undula.models.filament import FEWEST_SEGMENTS, MOST_SEGMENTS, Filament
+from undula.models.chain import MAX_LINKS
+from undula.models.filament import MAX_SEGMENTS, MIN_SEGMENTS, Filament
 from undula.models.loads.analytic import TipLoad
 from undula.models.loads.user_density import TableLoad
 from undula.models.natural_curvature import CurvatureTable
@@ -109,12 +109,12 @@ class ModelTable(Table):
     )
     segments: int = Field(
         default=40,
-        ge=FEWEST_SEGMENTS,
-        le=MOST_SEGMENTS,
-        description=f"a whole number from {FEWEST_SEGMENTS} to {MOST_SEGMENTS}",
+        ge=MIN_SEGMENTS,
+        le=MAX_SEGMENTS,
+        description=f"a whole number from {MIN_SEGMENTS} to {MAX_SEGMENTS}",
     )
     links: int = Field(
-        default=6, ge=1, le=MOST_LINKS, description=f"a whole number from 1 to {MOST_LINKS}"
+        default=6, ge=1, le=MAX_LINKS, description=f"a whole number from 1 to {MAX_LINKS}"
     )
     drag_ratio: float = Field(default=2.0, ge=1.0, description="a number of at least 1")
     inextensibility: Inextensibility = Field(default="exact", description="'exact' or 'weak'")

@@ -1,10 +1,10 @@
-"""Arrays that are lent to compiled code for the time of a call.
+"""Arrays without reference counts, borrowed by compiled code for the duration of a call.
 
-Compiled code counts the references to each array that it takes out of a record, so that the memory
-is freed with the last one. In the many small kernels of a step this counting takes as long as a
-third of the arithmetic. Whoever holds a record for the whole call can lend it: its arrays then have
-no count. The owner must outlive the loan: compiled code drops what it does not use any more, so an
-owner that was made in the same function has to be used once more after the call.
+Compiled code counts the references to each array that it reads from a record, and frees the memory
+with the last one. In the many small kernels of a step, counting takes a third of the time of the
+arithmetic. A function that owns a record for a whole call can pass a borrowed record instead, whose
+arrays have no count. The owner must outlive the call: compiled code drops a variable after its last
+use, so an owner created in the same function has to be used once more after the call.
 """
 
 from typing import Any, cast
@@ -16,16 +16,27 @@ from undula.jit.compilation import RESOLVED
 
 
 def borrowed(record: Any) -> Any:
-    """Return a record (a `typing.NamedTuple`) whose arrays have no count; an array likewise."""
+    """Return a record without reference counts of its arrays.
+
+    Parameters
+    ----------
+    record : typing.NamedTuple or ndarray
+        The owner. Called from Python, it is returned as it is.
+
+    Returns
+    -------
+    typing.NamedTuple or ndarray
+        The same values in the same memory.
+    """
     return record
 
 
 def _uncounted(typing_context: Any, array: Any) -> Any:  # noqa: ARG001
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        made = context.make_array(signature.return_type)(context, builder, arguments[0])
-        made.meminfo = cgutils.get_null_value(made.meminfo.type)
-        made.parent = cgutils.get_null_value(made.parent.type)
-        return made._getvalue()
+        uncounted = context.make_array(signature.return_type)(context, builder, arguments[0])
+        uncounted.meminfo = cgutils.get_null_value(uncounted.meminfo.type)
+        uncounted.parent = cgutils.get_null_value(uncounted.parent.type)
+        return uncounted._getvalue()
 
     return array(array), generate
 

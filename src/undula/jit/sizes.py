@@ -1,14 +1,13 @@
-"""Sizes of arrays, declared at each entry point and compared before it runs.
+"""Declared shapes and types of the arrays of an entry point, checked before it runs.
 
-Compiled code writes where an index points to, inside of an array or not. So an entry point says
-what its arrays have to be, as in
+Compiled code does not check that an index is inside its array. Therefore each entry point declares
+its arrays, as in
 
     y (n), w (n), band (n, b), places (n, 3) int
 
-A name stands for a number that is the same wherever it occurs; anything else in the place of one is
-an expression of such names and of other arguments. Arrays hold floats, or what stands behind the
-parenthesis: int or complex. The comparisons are compiled into the entry point, where they take
-nanoseconds.
+A name stands for one number throughout the declaration. Any other size is an expression of such
+names and of other arguments. Arrays hold floats, or the type after the parenthesis: int or complex.
+The checks are compiled into the entry point and take nanoseconds.
 """
 
 import inspect
@@ -22,46 +21,74 @@ from numba.extending import overload
 _ARRAY = re.compile(r"([\w.]+) \(([^()]*)\)( int| complex)?(?:, |$)")
 
 
-class Declared(NamedTuple):
-    """An array of an entry point: its name, its sizes as they are written, and what it holds."""
+class DeclaredArray(NamedTuple):
+    """An array of an entry point.
+
+    Attributes
+    ----------
+    name : str
+        Name of the argument, or of a field of a record, as ``stepper.real``.
+    sizes : tuple of str
+        Its shape: names and expressions.
+    dtype : {"float", "int", "complex"}
+        Type of its numbers.
+    """
 
     name: str
     sizes: tuple[str, ...]
-    holds: str
+    dtype: str
 
 
-def declared(sizes: str) -> tuple[Declared, ...]:
+def parse_declaration(sizes: str) -> tuple[DeclaredArray, ...]:
     """Return the arrays of a declaration.
+
+    Parameters
+    ----------
+    sizes : str
+        The declaration.
+
+    Returns
+    -------
+    tuple of DeclaredArray
+        Its arrays, in order.
 
     Raises
     ------
     ValueError
-        It is none.
+        The text is no declaration.
     """
-    found = list(_ARRAY.finditer(sizes))
-    if "".join(one.group() for one in found) != sizes:
+    matches = list(_ARRAY.finditer(sizes))
+    if "".join(match.group() for match in matches) != sizes:
         raise ValueError(f"{sizes!r} declares no arrays; write it like y (n), band (n, b)")
     return tuple(
-        Declared(
-            one[1], tuple(size.strip() for size in one[2].split(",")), (one[3] or "float").strip()
+        DeclaredArray(
+            match[1],
+            tuple(size.strip() for size in match[2].split(",")),
+            (match[3] or "float").strip(),
         )
-        for one in found
+        for match in matches
     )
 
 
-def checked(
+def with_argument_check(
     function: Callable[..., Any], sizes: str, where: Callable[..., Any] | None
 ) -> Callable[..., Any]:
-    """Return the function behind a check of its arguments, which raises ValueError.
+    """Return a function that checks its arguments and then calls a kernel.
 
     Parameters
     ----------
     function : callable
-        A kernel.
+        The kernel.
     sizes : str
         The declaration.
     where : callable, optional
-        A kernel of arguments and sizes, by their names, that tells whether they go together.
+        A kernel of arguments and sizes, by their names, that returns whether they fit one another.
+
+    Returns
+    -------
+    callable
+        A Python function with the name, the docstring and the arguments of `function`. It raises
+        ValueError for arguments that do not fit.
     """
     arguments = list(inspect.signature(function).parameters)
     source = "\n    ".join(
@@ -71,7 +98,7 @@ def checked(
             f"return _unchecked({', '.join(arguments)})",
         ]
     )
-    namespace: dict[str, Any] = {"_unchecked": function, "_go_together": where, **_HOLDS}
+    namespace: dict[str, Any] = {"_unchecked": function, "_condition": where, **_HOLDS}
     exec(source, namespace)
     shell: Any = namespace[function.__name__]
     shell.__code__ = shell.__code__.replace(
@@ -86,34 +113,34 @@ def _lines(
     name: str, arguments: list[str], sizes: str, where: Callable[..., Any] | None
 ) -> Iterator[str]:
     """Yield the statements of a check."""
-    known = set(arguments)
+    defined = set(arguments)
 
     def unless(condition: str, culprit: str) -> str:
-        told = f"{name}: {culprit} not fit; it takes {sizes}"
-        return f"if not ({condition}): raise ValueError({told!r})"
+        message = f"{name}: {culprit} not fit; it takes {sizes}"
+        return f"if not ({condition}): raise ValueError({message!r})"
 
-    for array in declared(sizes):
-        yield unless(f"_holds_{array.holds}({array.name})", f"{array.name} does")
+    for array in parse_declaration(sizes):
+        yield unless(f"_holds_{array.dtype}({array.name})", f"{array.name} does")
         for axis, size in enumerate(array.sizes):
-            if size.isidentifier() and size not in known:
+            if size.isidentifier() and size not in defined:
                 yield f"{size} = {array.name}.shape[{axis}]"
-                known.add(size)
+                defined.add(size)
             else:
                 yield unless(f"{array.name}.shape[{axis}] == {size}", f"{array.name} does")
     if where is not None:
-        asked = ", ".join(inspect.signature(where).parameters)
-        yield unless(f"_go_together({asked})", f"{asked} do")
+        names = ", ".join(inspect.signature(where).parameters)
+        yield unless(f"_condition({names})", f"{names} do")
 
 
 def _holding(dtype: types.Type) -> Callable[[Any], bool]:
-    """Return the function that tells whether an array holds numbers of a type."""
+    """Return a function that returns whether an array holds numbers of a type."""
 
     def holds(array: Any) -> bool:
         return bool(array.dtype == str(dtype))
 
     def holds_compiled(array: Any) -> Any:
-        told = isinstance(array, types.Array) and array.dtype == dtype
-        return (lambda array: True) if told else (lambda array: False)  # noqa: ARG005
+        matches = isinstance(array, types.Array) and array.dtype == dtype
+        return (lambda array: True) if matches else (lambda array: False)  # noqa: ARG005
 
     overload(holds, strict=False)(holds_compiled)
     return holds

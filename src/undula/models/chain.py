@@ -1,8 +1,8 @@
-"""The bead-spring chain: the linked rod with a bead and a spring at each end of its links.
+"""The bead-spring chain: a linked rod with a spring at the base and a bead at the end of each link.
 
-It has equal springs K at all joints, a base spring of its own, and beads whose drag is isotropic
-unless a drag ratio is asked for. Numbers are in units of L, K and the drag zeta of a bead: forces
-in K/L, energies in K, times in zeta L^2/K. One link stays straight whatever pushes it.
+It has equal springs K at all joints, except for the base spring, and beads with isotropic drag
+unless a drag ratio is given. Numbers are in units of L, K and the drag zeta of a bead: forces in
+K/L, energies in K, times in zeta L^2/K. A chain of one link is stable under any force.
 
 Source: Ling, Guo & Kanso (2018), bead-spring model; two links in a plane are those of De Canio,
 Lauga & Goldstein (2017).
@@ -29,36 +29,49 @@ from undula.models.rod.tables import (
 )
 from undula.models.units import Units, chain_units
 
-MOST_LINKS = 1000
+MAX_LINKS = 1000
 
 
 @dataclass(frozen=True)
 class Chain(LinkedRod):
     """A clamped chain of rigid links with springs at its joints and beads at their ends.
 
-    Attributes
+    Parameters
     ----------
     links : int
         Number of links and beads N, 1 to 1000.
     load : Load
-        The follower force: `TipLoad` on the last bead, `BeadLoad` on others, or a density.
+        The follower force [K/L]: `TipLoad` on the last bead, `BeadLoad` on others, or a density.
     drag_ratio : float
         Normal over tangential drag coefficient of a bead, gamma, at least 1.
     base_spring : float
         Stiffness of the spring that clamps the first link [K], positive.
     bead_drag : float or tuple of float
-        Drag coefficient of every bead, or of each one from the base on [zeta], positive.
+        Drag coefficient of all beads, or of each bead from the base on [zeta], positive.
     confined : bool
-        Whether the chain is kept in the x-z plane.
+        Confine the motion to the x-z plane.
     spring : {"angle", "unwrapped"}
-        What a joint's energy K psi^2 / 2 takes for psi: the angle between its links, from 0 to pi,
-        or that angle followed continuously, beyond pi; the latter for confined chains. A start has
-        angles up to pi.
+        The angle psi in a joint's energy K psi^2 / 2: the angle between its links, from 0 to pi, or
+        the unwrapped angle, which is continuous beyond pi, for confined chains. Initial angles are
+        at most pi.
 
     Raises
     ------
     InputError
-        A value is out of its range.
+        A value is out of its range, or two values exclude each other.
+
+    References
+    ----------
+    Ling, Guo & Kanso (2018), J. R. Soc. Interface 15: the bead-spring model.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Chain(links=2, load=un.TipLoad(8.0))
+    >>> model.links, model.units.force
+    (2, 'K/L')
+    >>> f"{un.onset(model).force:.6f}"  # K0 + 4 + w1/w2 in closed form
+    '6.000000'
     """
 
     links: int
@@ -70,11 +83,11 @@ class Chain(LinkedRod):
     spring: Literal["angle", "unwrapped"] = "angle"
 
     def __post_init__(self) -> None:
-        """Refuse values that make no chain."""
+        """Check the values."""
         whole = isinstance(self.links, int | np.integer) and not isinstance(self.links, bool)
-        if not (whole and 1 <= self.links <= MOST_LINKS):
+        if not (whole and 1 <= self.links <= MAX_LINKS):
             raise InputError(
-                f"links = {self.links!r} makes no chain; give a whole number from 1 to {MOST_LINKS}"
+                f"links = {self.links!r} makes no chain; give a whole number from 1 to {MAX_LINKS}"
             )
         if not isinstance(self.load, Load):
             raise InputError(f"load = {self.load!r} is no load; give one such as TipLoad(8.0)")
@@ -97,19 +110,19 @@ class Chain(LinkedRod):
             )
         if isinstance(self.bead_drag, Iterable) and not isinstance(self.bead_drag, str):
             object.__setattr__(self, "bead_drag", tuple(self.bead_drag))
-        given = self.bead_drag if isinstance(self.bead_drag, tuple) else (self.bead_drag,)
-        if not all(is_number(one) and one > 0.0 for one in given):
+        drags = self.bead_drag if isinstance(self.bead_drag, tuple) else (self.bead_drag,)
+        if not all(is_number(drag) and drag > 0.0 for drag in drags):
             raise InputError(f"bead_drag = {self.bead_drag!r} has to be positive finite numbers")
-        if isinstance(self.bead_drag, tuple) and len(given) != self.links:
+        if isinstance(self.bead_drag, tuple) and len(drags) != self.links:
             raise InputError(
-                f"bead_drag lists {len(given)} beads, and a chain of {self.links} links has"
+                f"bead_drag lists {len(drags)} beads, and a chain of {self.links} links has"
                 f" {self.links}; give one number for each, or one for all"
             )
         self.load.shares(self.links)
 
     @cached_property
     def system(self) -> Rod:
-        """The tables: equal springs and beads, apart from what is asked for."""
+        """The tables, with equal springs and beads by default."""
         joint = np.ones(self.links)
         joint[0] = self.base_spring
         weight: Links = np.ones(self.links) * self.bead_drag
@@ -122,7 +135,7 @@ class Chain(LinkedRod):
 
     @property
     def units(self) -> Units:
-        """Names of the units of its numbers."""
+        """Units of the model's numbers."""
         return chain_units(self.links)
 
     def linearised(self) -> tuple[Array, Array]:

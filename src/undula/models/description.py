@@ -1,15 +1,16 @@
-"""A model and its load in a few words, for titles and the heads of answers.
+"""A model and its load in a few words, for titles and headings.
 
-Told is what departs from an isotropic straight filament in space with the drag of a slender body,
-or from a chain of like springs and beads.
+Named are only the differences from an isotropic straight filament in space with the drag of a
+slender body, or from a chain of equal springs and beads.
 """
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from undula.models.loads.analytic import LinearLoad, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, PointLoad, TipLoad
 from undula.models.loads.beads import BeadLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import ProfileLoad, TableLoad
 from undula.models.natural_curvature import CurvatureTable
 from undula.models.units import chain_units
@@ -26,62 +27,80 @@ _PROFILES = {
 _DRAG_RATIOS = {"filament": 2.0, "chain": 1.0}
 _STRAIGHT = (0.0, 0.0)
 _TWISTS = {"paper": "twist moment left out", "rigid": "rigid twist", "elastic": "elastic twist"}
-#: Longer lists are told by how many they are.
-_LISTED = 8
+#: Number of entries up to which a list is written out.
+_MAX_LISTED = 8
 
 
-def model_words(model: Any) -> str:
-    """Return a model and its load in a few words, such as ``tip force 75, confined``."""
-    load = model.load
-    if not (is_dataclass(model) and is_dataclass(load)):
-        return f"{type(model).__name__} under {type(load).__name__}"
-    profile = _PROFILES.get(type(load), type(load).__name__)
-    body = {one.name: getattr(model, one.name) for one in fields(model)}
-    values = {one.name: getattr(load, one.name) for one in fields(load)}
-    if profile == "tip":
-        values.pop("position", None)
-    return words(body, profile, values)
-
-
-def words(
-    body: Mapping[str, Any], profile: str, load: Mapping[str, Any], swept: Collection[str] = ()
-) -> str:
+def describe_model(model: Any) -> str:
     """Return a model and its load in a few words.
 
     Parameters
     ----------
-    body
-        Values of the model by the names of its fields; those without meaning may be left out.
-    profile
-        How the load is spread: a profile of the input file, or another word.
-    load
-        Values of the load by the names of its fields; the force is needed.
-    swept
-        Names that stand for many values and are left out, as ``load.force``.
+    model : Model
+        Any model.
+
+    Returns
+    -------
+    str
+        For example ``tip force 75, confined to a plane``.
     """
-    bare = {key.partition(".")[2] or key for key in swept}
+    load = model.load
+    if not (is_dataclass(model) and is_dataclass(load)):
+        return f"{type(model).__name__} under {type(load).__name__}"
+    profile = _PROFILES.get(type(load), type(load).__name__)
+    body = {entry.name: getattr(model, entry.name) for entry in fields(model)}
+    values = {entry.name: getattr(load, entry.name) for entry in fields(load)}
+    if profile == "tip":
+        values.pop("position", None)
+    return describe(body, profile, values)
+
+
+def describe(
+    body: Mapping[str, Any], profile: str, load: Mapping[str, Any], swept: Collection[str] = ()
+) -> str:
+    """Return a model and its load, given as tables, in a few words.
+
+    Parameters
+    ----------
+    body : mapping
+        Values of the model by the names of its fields; those without meaning may be left out.
+    profile : str
+        Distribution of the load: a profile of the input file, or another word.
+    load : mapping
+        Values of the load by the names of its fields; the force is needed.
+    swept : collection of str
+        Names of swept parameters, which are left out, as ``load.force``.
+
+    Returns
+    -------
+    str
+        As `describe_model` returns.
+    """
+    swept_fields = {key.partition(".")[2] or key for key in swept}
     links = body.get("links")
-    told = [*_load_words(profile, load, bare, links), *_body_words(body, bare)]
+    phrases = [*_load_words(profile, load, swept_fields, links), *_body_words(body, swept_fields)]
     if links is not None:
-        told.insert(0, "chain" if "links" in bare else f"chain of {links} links")
-    return ", ".join(told)
+        phrases.insert(0, "chain" if "links" in swept_fields else f"chain of {links} links")
+    return ", ".join(phrases)
 
 
 def _load_words(
     profile: str, load: Mapping[str, Any], swept: set[str], links: int | None
 ) -> Iterator[str]:
     unit = "" if links is None else f" {chain_units(links).force}"
-    known = {name: value for name, value in load.items() if name not in swept}
-    head = f"{profile} force {known['force']:.12g}{unit}" if "force" in known else f"{profile} load"
-    place = f" at s = {known['position']:.12g}" if "position" in known else ""
-    yield head + place + _share_words(known)
+    shown = {name: value for name, value in load.items() if name not in swept}
+    force_text = (
+        f"{profile} force {shown['force']:.12g}{unit}" if "force" in shown else f"{profile} load"
+    )
+    position_text = f" at s = {shown['position']:.12g}" if "position" in shown else ""
+    yield force_text + position_text + _share_words(shown)
     for name in ("slope", "exponent"):
-        if name in known:
-            yield f"{name} {known[name]:.12g}"
+        if name in shown:
+            yield f"{name} {shown[name]:.12g}"
 
 
 def _share_words(load: Mapping[str, Any]) -> str:
-    """Return between which points or beads a load is shared, or by which function."""
+    """Return the points, the beads or the function of a load's distribution."""
     if "beads" in load:
         beads = load["beads"]
         return " on all" if beads == "all" else f" on {_listed(beads, 'beads')}"
@@ -92,36 +111,36 @@ def _share_words(load: Mapping[str, Any]) -> str:
 
 
 def _body_words(body: Mapping[str, Any], swept: set[str]) -> Iterator[str]:
-    known = {name: value for name, value in body.items() if name not in swept}
-    yield from _rest_words(known, swept)
-    if known.get("confined"):
+    shown = {name: value for name, value in body.items() if name not in swept}
+    yield from _rest_words(shown, swept)
+    if shown.get("confined"):
         yield "confined to a plane"
-    if known.get("inextensibility") == "weak":
-        stiffness = known.get("tensile_stiffness")
+    if shown.get("inextensibility") == "weak":
+        stiffness = shown.get("tensile_stiffness")
         yield "extensible" if stiffness is None else f"tensile stiffness {stiffness:.6g}"
-    usual = _DRAG_RATIOS["chain" if "links" in body else "filament"]
-    if known.get("drag_ratio", usual) != usual:
-        yield f"drag ratio {known['drag_ratio']:.6g}"
-    if known.get("base_spring", 1.0) != 1.0:
-        yield f"base spring {known['base_spring']:.6g}"
-    drag = known.get("bead_drag", 1.0)
+    default_ratio = _DRAG_RATIOS["chain" if "links" in body else "filament"]
+    if shown.get("drag_ratio", default_ratio) != default_ratio:
+        yield f"drag ratio {shown['drag_ratio']:.6g}"
+    if shown.get("base_spring", 1.0) != 1.0:
+        yield f"base spring {shown['base_spring']:.6g}"
+    drag = shown.get("bead_drag", 1.0)
     if drag != 1.0:
         yield f"bead drag {_listed(drag, 'values') if isinstance(drag, tuple) else f'{drag:.6g}'}"
-    if known.get("spring") == "unwrapped":
+    if shown.get("spring") == "unwrapped":
         yield "springs unwrapped"
 
 
 def _rest_words(body: Mapping[str, Any], swept: set[str]) -> Iterator[str]:
-    """Tell how a filament is curved at rest and how it differs across, and of its twist."""
+    """Yield natural curvature, bending ratio and twist of a filament."""
     curvature, ratio = body.get("natural_curvature", _STRAIGHT), body.get("bending_ratio", 1.0)
     directed = {"natural_curvature.k1", "natural_curvature.k2", "bending_ratio"} & swept
     if curvature == _STRAIGHT and ratio == 1.0 and not directed:
         return
     if isinstance(curvature, tuple):
-        told = {f"k{i}": value for i, value in enumerate(curvature, start=1) if value}
+        phrases = {f"k{i}": value for i, value in enumerate(curvature, start=1) if value}
         components = [
             f"{name} = {value:.6g}"
-            for name, value in told.items()
+            for name, value in phrases.items()
             if f"natural_curvature.{name}" not in swept
         ]
         if components:
@@ -139,6 +158,6 @@ def _rest_words(body: Mapping[str, Any], swept: set[str]) -> Iterator[str]:
 
 
 def _listed(values: Collection[float], what: str) -> str:
-    if len(values) > _LISTED:
+    if len(values) > _MAX_LISTED:
         return f"{len(values)} {what}"
     return ", ".join(f"{value:.6g}" for value in values)

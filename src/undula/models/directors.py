@@ -1,4 +1,4 @@
-"""Directors of a filament in space: which way the material points, link by link."""
+"""Directors of a filament in space: the material frame of each link."""
 
 import numpy as np
 
@@ -6,33 +6,38 @@ from undula.arrays import Array, Nodes
 
 
 def directors_of(nodes: Nodes, turns: Array) -> Array:
-    """Return the directors (d1, d2, t) of each link as rows, shape (..., N, 3, 3), right-handed.
+    """Return the directors of each link.
 
-    The first is e_x at the clamp and is carried from link to link by the smallest rotation of the
-    tangent, so that all are orthonormal to round-off.
+    The first is e_x at the clamp, and is transported from link to link by the smallest rotation of
+    the tangent. All are orthonormal to round-off.
 
     Parameters
     ----------
     nodes : ndarray, shape (..., N + 1, 3)
         Positions of the nodes, base first.
     turns : ndarray, shape (..., N)
-        Angles about the tangent by which the directors of each link differ from those that are
-        carried without twist [rad].
+        Angles about the tangent between the directors of each link and those transported without
+        twist [rad].
+
+    Returns
+    -------
+    ndarray, shape (..., N, 3, 3)
+        The directors (d1, d2, t) as rows, right-handed.
     """
     links = np.diff(nodes, axis=-2)
     tangents = links / np.linalg.norm(links, axis=-1, keepdims=True)
-    before, carried = np.broadcast_to([0.0, 0.0, 1.0], tangents[..., 0, :].shape), []
-    director = np.broadcast_to([1.0, 0.0, 0.0], before.shape)
+    previous, carried = np.broadcast_to([0.0, 0.0, 1.0], tangents[..., 0, :].shape), []
+    director = np.broadcast_to([1.0, 0.0, 0.0], previous.shape)
     for i in range(tangents.shape[-2]):
-        here = tangents[..., i, :]
-        lever = 1.0 + np.sum(before * here, axis=-1, keepdims=True)
-        share = np.sum(here * director, axis=-1, keepdims=True) / lever
-        director = director - share * (before + here)
-        # What round-off leaves along the tangent would grow from link to link.
-        director = director - np.sum(director * here, axis=-1, keepdims=True) * here
+        tangent = tangents[..., i, :]
+        lever = 1.0 + np.sum(previous * tangent, axis=-1, keepdims=True)
+        share = np.sum(tangent * director, axis=-1, keepdims=True) / lever
+        director = director - share * (previous + tangent)
+        # A component along the tangent by round-off would grow from link to link.
+        director = director - np.sum(director * tangent, axis=-1, keepdims=True) * tangent
         director = director / np.linalg.norm(director, axis=-1, keepdims=True)
         carried.append(director)
-        before = here
+        previous = tangent
     first = np.stack(carried, axis=-2)
     second = np.cross(tangents, first)
     cosine, sine = np.cos(turns)[..., None], np.sin(turns)[..., None]
@@ -41,9 +46,17 @@ def directors_of(nodes: Nodes, turns: Array) -> Array:
 
 
 def unbent_links(natural: Array) -> Array:
-    """Return the tangents (N, 3) of links whose joints have their natural bends (N, 2) [rad].
+    """Return the tangents of links whose joints have their natural angles.
 
-    The bends are about the directors below each joint, the first two at the clamp e_x and e_y.
+    Parameters
+    ----------
+    natural : ndarray, shape (N, 2)
+        Angle [rad] of each joint about the directors below it, at the clamp e_x and e_y.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+        The unit tangents.
     """
     frame, tangents = np.eye(3), []
     for first, second in natural:
@@ -56,8 +69,10 @@ def unbent_links(natural: Array) -> Array:
 def _rotated(vectors: Array, turn: Array) -> Array:
     """Return vectors (k, 3) rotated by a rotation vector (3,), by Rodrigues' formula."""
     angle = np.linalg.norm(turn)
-    once = np.cross(turn, vectors)
-    twice = np.cross(turn, once)
+    first_order = np.cross(turn, vectors)
+    second_order = np.cross(turn, first_order)
     return np.asarray(
-        vectors + np.sinc(angle / np.pi) * once + 0.5 * np.sinc(0.5 * angle / np.pi) ** 2 * twice
+        vectors
+        + np.sinc(angle / np.pi) * first_order
+        + 0.5 * np.sinc(0.5 * angle / np.pi) ** 2 * second_order
     )

@@ -1,4 +1,4 @@
-"""The elastic filament: the linked rod with half-cell ends, second-order accurate in 1/segments."""
+"""The elastic filament: a linked rod with half cells at its ends, of second order in 1/segments."""
 
 import math
 import reprlib
@@ -15,9 +15,9 @@ from undula.models.linked_rod import LinkedRod
 from undula.models.loads.analytic import DensityLoad
 from undula.models.natural_curvature import (
     NaturalCurvature,
-    accepted,
-    of_pieces,
-    refuse_beyond_pi,
+    mean_over_pieces,
+    require_below_pi,
+    validated,
 )
 from undula.models.rod.tables import (
     DirectedRod,
@@ -32,8 +32,8 @@ from undula.models.units import FILAMENT_UNITS, Units
 
 #: EA L^2 / B = 4 (L/a)^2 of a round filament with a/L = 1/100.
 TENSILE_STIFFNESS = 4e4
-#: With more than the most, errors of 1/segments^2 are below those of the steps in time.
-FEWEST_SEGMENTS, MOST_SEGMENTS = 4, 2000
+#: Beyond the largest number, errors of order 1/segments^2 are below those of the steps in time.
+MIN_SEGMENTS, MAX_SEGMENTS = 4, 2000
 
 _RODS: dict[tuple[str, bool], type[PlainRod]] = {
     ("exact", False): SpatialRod,
@@ -47,20 +47,20 @@ _RODS: dict[tuple[str, bool], type[PlainRod]] = {
 class Filament(LinkedRod):
     """A clamped-free elastic filament in viscous fluid under an axial follower force.
 
-    Attributes
+    Parameters
     ----------
     segments : int
-        Links that the filament is made of, from 4 to 2000. Errors fall as 1/segments^2.
+        Number of links, from 4 to 2000. Errors fall as 1/segments^2.
     load : DensityLoad
         The axial follower force, see `undula.models.loads.analytic`.
     drag_ratio : float
         Normal over tangential drag coefficient, gamma, at least 1.
     inextensibility : {"exact", "weak"}
-        Rigid links, or links that a large tensile stiffness keeps from stretching.
+        Rigid links, or extensible links of a large tensile stiffness.
     tensile_stiffness : float
-        EA L^2 / B of the weak form, positive; without meaning for the exact one.
+        EA L^2 / B of the weak form, positive; without effect for the exact form.
     confined : bool
-        Whether the filament is kept in the x-z plane.
+        Confine the motion to the x-z plane.
     natural_curvature : tuple of float, CurvatureTable or callable
         Components k1, k2 of the curvature at rest [1/L] about the material directors d1 and d2,
         which are e_x and e_y at the clamp: constant, a table, or a function from arc lengths (n,)
@@ -68,20 +68,30 @@ class Filament(LinkedRod):
     bending_ratio : float
         Stiffness against bending about d2 over that about d1, which is B; positive.
     twist : {"paper", "rigid", "elastic"}
-        What keeps a curved or anisotropic filament from twisting: nothing that it would feel, as
-        in the paper, whose equations drop the twist moment; a rigidity that bears whatever moment
-        it takes; or a stiffness. Without meaning for a straight isotropic filament, which does not
-        twist.
+        Treatment of twist for a curved or anisotropic filament: no twist, with the twist moment
+        dropped from the forces, as in the paper; no twist, with the moment as constraint; or a
+        finite stiffness. Without effect for a straight isotropic filament, which does not twist.
     twist_stiffness : float
-        C/B of the elastic twist, positive; without meaning for the others.
+        C/B of the elastic twist, positive; without effect for the other two.
     keep_directors : bool
-        Whether directors are among its unknowns even if it needs none, as one of a family whose
-        others do.
+        Include directors in the unknowns even if they are not needed, for a family of filaments
+        some of which need them.
 
     Raises
     ------
     InputError
-        A value is out of its range.
+        A value is out of its range, or two values exclude each other.
+
+    References
+    ----------
+    Ling, Guo & Kanso (2018), J. R. Soc. Interface 15: the model, with half cells added at the ends.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(segments=20, load=un.TipLoad(75.0))
+    >>> model.links, model.units.force
+    (20, 'B/L^2')
     """
 
     segments: int
@@ -97,15 +107,15 @@ class Filament(LinkedRod):
     keep_directors: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse values that make no filament."""
+        """Check the values."""
         if (
             isinstance(self.segments, bool)
             or not isinstance(self.segments, int | np.integer)
-            or not FEWEST_SEGMENTS <= self.segments <= MOST_SEGMENTS
+            or not MIN_SEGMENTS <= self.segments <= MAX_SEGMENTS
         ):
             raise InputError(
                 f"segments = {self.segments!r} makes no filament;"
-                f" give a whole number from {FEWEST_SEGMENTS} to {MOST_SEGMENTS}"
+                f" give a whole number from {MIN_SEGMENTS} to {MAX_SEGMENTS}"
             )
         if not isinstance(self.load, DensityLoad):
             raise InputError(
@@ -129,7 +139,7 @@ class Filament(LinkedRod):
         self._check_directors()
 
     def _check_directors(self) -> None:
-        object.__setattr__(self, "natural_curvature", accepted(self.natural_curvature))
+        object.__setattr__(self, "natural_curvature", validated(self.natural_curvature))
         for name in ("bending_ratio", "twist_stiffness"):
             value = getattr(self, name)
             if not (is_number(value) and value > 0.0):
@@ -138,7 +148,7 @@ class Filament(LinkedRod):
             raise InputError(f"twist = {self.twist!r} has to be 'paper', 'rigid' or 'elastic'")
         if not self.material_frame:
             return
-        refuse_beyond_pi(self.natural_curvature, self.segments, MOST_SEGMENTS)
+        require_below_pi(self.natural_curvature, self.segments, MAX_SEGMENTS)
         what = "natural_curvature" if self.piece_curvature.any() else "bending_ratio"
         what = what if self.without_rotational_symmetry else "keep_directors"
         for other, wanted in (("confined", False), ("inextensibility", "exact")):
@@ -150,25 +160,25 @@ class Filament(LinkedRod):
 
     @cached_property
     def piece_curvature(self) -> Array:
-        """Natural curvature (N + 1, 2) of the pieces that joints stand for, and of the rest [1/L].
+        """Natural curvature (N + 1, 2) [1/L] of the pieces of the joints, and of the end piece.
 
-        Pieces end in the middles of links; the rest is the last half of the last one.
+        Pieces end at the middles of links; the end piece is the outer half of the last link.
         """
-        return of_pieces(self.natural_curvature, self.segments)
+        return mean_over_pieces(self.natural_curvature, self.segments)
 
     @cached_property
     def without_rotational_symmetry(self) -> bool:
-        """Whether its directors matter: it is naturally curved, or bends not alike about them."""
+        """True with natural curvature or anisotropic bending: no symmetry about the axis."""
         return self.bending_ratio != 1.0 or bool(self.piece_curvature.any())
 
     @property
     def material_frame(self) -> bool:
-        """Whether directors are among its unknowns; the clamp holds the first: no turns then."""
+        """True if directors are among the unknowns; no rotations about the axis are then used."""
         return self.keep_directors or self.without_rotational_symmetry
 
     @cached_property
     def system(self) -> Rod:
-        """The tables: half cells at both ends make them second-order accurate."""
+        """The tables, with half cells at both ends, which make them second-order accurate."""
         n, h = self.segments, 1.0 / self.segments
         joint, weight = np.full(n, 1.0 / h), np.full(n, h)
         joint[0], weight[-1] = 2.0 / h, 0.5 * h
@@ -177,25 +187,23 @@ class Filament(LinkedRod):
         tables = (joint, weight, outer_force, inner_force, h, 1.0 - 1.0 / self.drag_ratio, tensile)
         if not self.material_frame:
             return _RODS[self.inextensibility, self.confined](*tables)
-        natural, tip = (
-            self.piece_curvature[:-1] / joint[:, None],
-            self._last_direction(outer_force, inner_force),
-        )
+        natural = self.piece_curvature[:-1] / joint[:, None]
+        tip = self._last_load_direction(outer_force, inner_force)
         compliance = 1.0 / self.twist_stiffness if self.twist == "elastic" else 0.0
         transmitted = 0.0 if self.twist == "paper" else 1.0
         return DirectedRod(*tables, natural, self.bending_ratio, compliance, transmitted, tip)
 
-    def _last_direction(self, outer_force: Links, inner_force: Links) -> Array:
-        """Return the tangent where the last link's load acts, (3,) on its directors and tangent.
+    def _last_load_direction(self, outer_force: Links, inner_force: Links) -> Array:
+        """Return the tangent at the last link's load: components (3,) on directors and tangent.
 
-        Nothing bends the filament there, so that it is curved as it is by nature.
+        There is no bending moment there, so that the curvature is the natural curvature.
         """
         total = outer_force[-1] + inner_force[-1]
-        beyond = np.clip(outer_force[-1] / total, 0.0, 1.0) - 0.5 if total != 0.0 else 0.0
-        turn = beyond / self.segments * self.piece_curvature[-1]
+        load_offset = np.clip(outer_force[-1] / total, 0.0, 1.0) - 0.5 if total != 0.0 else 0.0
+        turn = load_offset / self.segments * self.piece_curvature[-1]
         angle = np.hypot(*turn)
-        aside = np.sinc(angle / np.pi) * turn
-        return np.array([aside[1], -aside[0], np.cos(angle)])
+        components = np.sinc(angle / np.pi) * turn
+        return np.array([components[1], -components[0], np.cos(angle)])
 
     @property
     def links(self) -> int:
@@ -204,14 +212,14 @@ class Filament(LinkedRod):
 
     @property
     def units(self) -> Units:
-        """Names of the units of its numbers."""
+        """Units of the model's numbers."""
         return FILAMENT_UNITS
 
     @property
     def continuum_load(self) -> DensityLoad | None:
-        """The load of the inextensible filament that rigid links stand for; None for weak ones.
+        """The load of the continuous filament that rigid links approximate.
 
-        None as well where the straight filament is no equilibrium or bends not alike.
+        None for extensible links, natural curvature or anisotropic bending.
         """
         return (
             self.load
@@ -232,14 +240,14 @@ class Filament(LinkedRod):
         return super(Filament, bare).linearised()
 
     def rest(self) -> State:
-        """Return the state in which nothing is bent, the equilibrium without a load."""
+        """Return the state without bending moments, the equilibrium without a load."""
         if not isinstance(self.system, DirectedRod):
             return self.straight()
         tangents = np.cumsum(unbent_links(self.system.natural), axis=0)
         return self.from_nodes(np.concatenate([np.zeros((1, 3)), tangents]) * self.system.link)
 
     def reflect(self, x: State) -> State:
-        """Return the state reflected in the plane x = 0, unless natural curvature forbids it."""
+        """Return the state reflected in the plane x = 0; InputError if it is no symmetry."""
         if self.piece_curvature[:, 1].any():
             raise InputError(
                 "a filament with natural curvature about its second director is no mirror image of"
@@ -248,10 +256,17 @@ class Filament(LinkedRod):
         return super().reflect(x)
 
     def directors(self, unknowns: Array) -> Array:
-        """Return the directors (d1, d2, t) of each link as rows, shape (..., N, 3, 3).
+        """Return the directors of each link; of a link that twists, those of its lower half.
 
-        They are those of the lower half of a link that twists, right-handed, and orthonormal to
-        round-off; d1 is e_x at the clamp. `unknowns` (..., n) are the integrator's.
+        Parameters
+        ----------
+        unknowns : ndarray, shape (..., n)
+            The integrator's vectors.
+
+        Returns
+        -------
+        ndarray, shape (..., N, 3, 3)
+            (d1, d2, t) as rows, right-handed, orthonormal to round-off; d1 is e_x at the clamp.
         """
         turns = np.zeros((*unknowns.shape[:-1], self.links))
         if isinstance(self.system, DirectedRod):
@@ -260,9 +275,9 @@ class Filament(LinkedRod):
         return directors_of(self.nodes(self.positions(unknowns)), turns)
 
     def twist_moments(self, unknowns: Array) -> Array:
-        """Return the twist moment in each link (..., N) [B/L] of the integrator's vectors (..., n).
+        """Return the twist moments (..., N) [B/L] of links, from the integrator's vectors (..., n).
 
-        The `paper` has them dropped from the forces; they are what it would take.
+        With twist = "paper" they are computed, but dropped from the forces.
         """
         by_node = self.equations.layout.by_node(unknowns)
         if isinstance(self.system, DirectedRod):

@@ -1,8 +1,8 @@
-"""Natural curvature: how a filament is curved when nothing bends it.
+"""Natural curvature: the curvature of a filament without bending moment.
 
-It has a component along each of the two directors across the tangent. A component about the first
-director, which is e_x at the clamp, bends the filament in the y-z plane there; one about the
-second, e_y, in the x-z plane, towards x where it is positive.
+It has a component along each of the two directors normal to the tangent. A component about the
+first director, e_x at the clamp, bends the filament in the y-z plane there, towards -y where it is
+positive; a component about the second, e_y, bends it in the x-z plane, towards x.
 """
 
 import reprlib
@@ -16,27 +16,37 @@ import numpy as np
 from undula.arrays import Array, Points
 from undula.errors import InputError, is_number
 
-#: Points of a joint's cell at which the curvature is taken: exact for polynomials of degree 9.
+#: Gauss rule on a joint's cell, exact for polynomials of degree 9.
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-#: How far from 0 and 1 the ends of a table may be, by the round-off of whoever made it.
+#: Largest distance of the ends of a table from 0 and 1, by round-off.
 _END_ROUND_OFF = 1e-12
 
 
 @dataclass(frozen=True)
 class CurvatureTable:
-    """Natural curvature given at arc lengths, linear in between.
+    """Natural curvature given at arc lengths, with linear interpolation.
 
-    Attributes
+    Parameters
     ----------
-    s : tuple of float
-        Arc lengths [L], at least 2, increasing from 0 to 1; any sequence is taken.
-    k1, k2 : tuple of float
-        The components about the first and the second director at each of them [1/L].
+    s : sequence of float, shape (n,)
+        Arc lengths [L], at least 2, increasing from 0 to 1; stored as a tuple.
+    k1, k2 : sequence of float, shape (n,)
+        The components about the first and the second director [1/L]; stored as tuples.
 
     Raises
     ------
     InputError
-        A value is none, the numbers of values differ, or s does not increase from 0 to 1.
+        A value is not a finite number, the numbers of values differ, or s does not increase from 0
+        to 1.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> curvature = un.CurvatureTable(s=(0.0, 0.5, 1.0), k1=(6.0, 3.0, 0.0), k2=(0.0, 0.0, 0.0))
+    >>> curvature([0.25, 0.75])
+    array([[4.5, 1.5],
+           [0. , 0. ]])
+    >>> curved = un.Filament(20, un.TipLoad(75.0), natural_curvature=curvature)
     """
 
     s: tuple[float, ...]
@@ -44,7 +54,7 @@ class CurvatureTable:
     k2: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Refuse values that are no curvature."""
+        """Check the values."""
         for name in ("s", "k1", "k2"):
             object.__setattr__(self, name, _numbers(f"CurvatureTable: {name}", getattr(self, name)))
         for name in ("k1", "k2"):
@@ -67,7 +77,7 @@ class CurvatureTable:
             )
 
     def __call__(self, s: Points) -> Array:
-        """Return both components (2, n) at arc lengths (n,)."""
+        """Return both components (2, n) [1/L] at arc lengths s (n,) [L]."""
         return np.array([np.interp(s, self.s, self.k1), np.interp(s, self.s, self.k2)])
 
 
@@ -75,8 +85,18 @@ class CurvatureTable:
 NaturalCurvature = tuple[float, float] | CurvatureTable | Callable[[Points], Any]
 
 
-def accepted(given: Any) -> NaturalCurvature:
-    """Return a natural curvature as a user may give it, a pair as a tuple of floats.
+def validated(given: Any) -> NaturalCurvature:
+    """Return a user's natural curvature, a pair as a tuple of floats.
+
+    Parameters
+    ----------
+    given : NaturalCurvature or sequence of float
+        The user's value.
+
+    Returns
+    -------
+    NaturalCurvature
+        The same curvature.
 
     Raises
     ------
@@ -94,15 +114,27 @@ def accepted(given: Any) -> NaturalCurvature:
     return pair[0], pair[1]
 
 
-def of_pieces(curvature: NaturalCurvature, links: int) -> Array:
-    """Return the mean natural curvature (N + 1, 2) of the pieces between clamp, middles and tip.
+def mean_over_pieces(curvature: NaturalCurvature, links: int) -> Array:
+    """Return the mean natural curvature of the pieces between clamp, middles of links and tip.
 
-    Each joint stands for the piece that ends in the middle of the link above it.
+    Each joint represents the piece that ends at the middle of the link above it.
+
+    Parameters
+    ----------
+    curvature : NaturalCurvature
+        The curvature.
+    links : int
+        Number of links N.
+
+    Returns
+    -------
+    ndarray, shape (N + 1, 2)
+        Means over the pieces [1/L].
 
     Raises
     ------
     InputError
-        A function fails or gives values that are none.
+        A function fails or returns values that are not finite numbers.
     """
     if isinstance(curvature, tuple):
         return np.full((links + 1, 2), curvature)
@@ -113,19 +145,37 @@ def of_pieces(curvature: NaturalCurvature, links: int) -> Array:
     return np.asarray((0.5 * values @ _WEIGHTS).T)
 
 
-def refuse_beyond_pi(curvature: NaturalCurvature, links: int, most: int) -> None:
-    """Refuse a curvature that turns a joint of so many links by pi or more, where it folds.
+def require_below_pi(curvature: NaturalCurvature, links: int, most: int) -> None:
+    """Raise InputError for a curvature that gives a joint a natural angle of pi or more.
 
-    The sentence tells how many links are enough, if that is at most `most`.
+    The message states a sufficient number of links, if that is at most `most`.
+
+    Parameters
+    ----------
+    curvature : NaturalCurvature
+        The curvature.
+    links : int
+        Number of links.
+    most : int
+        Largest number of links.
+
+    Raises
+    ------
+    InputError
+        A joint would fold.
     """
     turn = _largest_turn(curvature, links)
     if turn < np.pi:
         return
-    enough = links
-    while enough <= most and _largest_turn(curvature, enough) >= np.pi:
-        # As many as a joint takes that is curved like the one that turns most.
-        enough = max(enough + 1, int(enough * _largest_turn(curvature, enough) / np.pi))
-    cure = f"use {enough} segments or more" if enough <= most else "give a smaller curvature"
+    sufficient = links
+    while sufficient <= most and _largest_turn(curvature, sufficient) >= np.pi:
+        # The number of links at which the most curved joint would have an angle of pi.
+        sufficient = max(
+            sufficient + 1, int(sufficient * _largest_turn(curvature, sufficient) / np.pi)
+        )
+    cure = (
+        f"use {sufficient} segments or more" if sufficient <= most else "give a smaller curvature"
+    )
     raise InputError(
         f"natural_curvature = {reprlib.repr(curvature)} turns a joint of {links} segments by"
         f" {turn:.3g} rad, beyond pi; {cure}"
@@ -133,8 +183,8 @@ def refuse_beyond_pi(curvature: NaturalCurvature, links: int, most: int) -> None
 
 
 def _largest_turn(curvature: NaturalCurvature, links: int) -> float:
-    """Return the largest angle [rad] by which joints turn when nothing bends them."""
-    turns = np.linalg.norm(of_pieces(curvature, links)[:-1], axis=1) / links
+    """Return the largest natural angle of a joint [rad]."""
+    turns = np.linalg.norm(mean_over_pieces(curvature, links)[:-1], axis=1) / links
     turns[0] *= 0.5  # the clamp's piece ends in the middle of the first link
     return float(turns.max())
 
@@ -148,15 +198,16 @@ def _values(curvature: Callable[[Points], Any], s: Points) -> Array:
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         raise InputError(f"natural_curvature fails ({reason}); {cure}") from error
     if not np.isfinite(values).all():
-        which, at = np.argwhere(~np.isfinite(values))[0]
+        component, k = np.argwhere(~np.isfinite(values))[0]
         raise InputError(
-            f"natural_curvature has k{which + 1} = {values[which, at]} at s = {s[at]:.6g}; {cure}"
+            f"natural_curvature has k{component + 1} = {values[component, k]}"
+            f" at s = {s[k]:.6g}; {cure}"
         )
     return values
 
 
 def _numbers(place: str, given: Any) -> tuple[float, ...]:
-    """Return a sequence of the user's as floats."""
+    """Return a user's sequence as floats."""
     if not isinstance(given, Iterable) or isinstance(given, str):
         raise InputError(f"{place} = {reprlib.repr(given)} has to be a sequence of numbers")
     values = given.tolist() if isinstance(given, np.ndarray) else list(given)

@@ -1,4 +1,4 @@
-"""The SI values behind the dimensionless numbers; the only place that knows SI units.
+"""SI values of the dimensionless units; the only module with SI units.
 
 With length L, bending stiffness B, viscosity mu and slenderness a/L:
 
@@ -17,29 +17,42 @@ from undula.errors import InputError
 
 Quantity = Literal["length", "time", "frequency", "force", "force_density", "energy"]
 
-# Within these bounds no product or quotient of scales leaves the range of a float.
-_SMALLEST, _LARGEST = 1e-40, 1e40
+# Bounds within which no product or quotient of scales leaves the range of a float.
+_MIN, _MAX = 1e-40, 1e40
 
 
 @dataclass(frozen=True)
 class Scales:
-    """SI value of one dimensionless unit of each quantity.
+    """SI value of one dimensionless unit of each quantity, for a filament.
 
-    Attributes
+    Parameters
     ----------
-    length
-        Filament length L, m.
-    bending_stiffness
-        Bending stiffness B, N m^2.
-    viscosity
-        Viscosity of the fluid mu, Pa s.
-    slenderness
+    length : float
+        Filament length L [m], positive.
+    bending_stiffness : float
+        Bending stiffness B [N m^2], positive.
+    viscosity : float
+        Viscosity of the fluid mu [Pa s], positive.
+    slenderness : float
         Radius over length a/L, above 0 and below 1.
 
     Raises
     ------
     InputError
         A value is not a positive finite number, or the slenderness is not below 1.
+
+    References
+    ----------
+    Ling, Guo & Kanso (2018), J. R. Soc. Interface 15, table 1: the default values.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> scales = un.Scales(length=10e-6)
+    >>> f"{scales.force:.3g} N"
+    '8e-12 N'
+    >>> f"{scales.to_si('frequency', 77.4):.4g} Hz"
+    '2269 Hz'
     """
 
     length: float = 20e-6
@@ -48,13 +61,13 @@ class Scales:
     slenderness: float = 1e-2
 
     def __post_init__(self) -> None:
-        """Refuse values from which no scales follow."""
+        """Check the values."""
         for field in fields(self):
             value = getattr(self, field.name)
-            if not _SMALLEST <= value <= _LARGEST:
+            if not _MIN <= value <= _MAX:
                 raise InputError(
                     f"{field.name} = {value} is not a positive number that SI scales can be made"
-                    f" of; give one from {_SMALLEST} to {_LARGEST}, such as {field.default}"
+                    f" of; give one from {_MIN} to {_MAX}, such as {field.default}"
                 )
         if self.slenderness >= 1.0:
             raise InputError(
@@ -64,32 +77,32 @@ class Scales:
 
     @property
     def normal_drag(self) -> float:
-        """Normal drag coefficient zeta per length, Pa s."""
+        """Normal drag coefficient per length, zeta [Pa s]."""
         return 4.0 * math.pi * self.viscosity / -math.log(self.slenderness)
 
     @property
     def time(self) -> float:
-        """Unit of time, s."""
+        """Unit of time [s]."""
         return self.normal_drag * self.length**4 / self.bending_stiffness
 
     @property
     def frequency(self) -> float:
-        """Unit of frequency, Hz."""
+        """Unit of frequency [Hz]."""
         return 1.0 / self.time
 
     @property
     def force(self) -> float:
-        """Unit of force, N."""
+        """Unit of force [N]."""
         return self.bending_stiffness / self.length**2
 
     @property
     def force_density(self) -> float:
-        """Unit of force per length, N/m."""
+        """Unit of force per length [N/m]."""
         return self.bending_stiffness / self.length**3
 
     @property
     def energy(self) -> float:
-        """Unit of energy, J."""
+        """Unit of energy [J]."""
         return self.bending_stiffness / self.length
 
     def to_si(self, quantity: Quantity, value: float) -> float:
@@ -97,9 +110,9 @@ class Scales:
 
         Parameters
         ----------
-        quantity
-            What the number measures.
-        value
+        quantity : {"length", "time", "frequency", "force", "force_density", "energy"}
+            The quantity of the number.
+        value : float
             Dimensionless number.
 
         Returns
@@ -114,9 +127,9 @@ class Scales:
 
         Parameters
         ----------
-        quantity
-            What the value measures.
-        value
+        quantity : {"length", "time", "frequency", "force", "force_density", "energy"}
+            The quantity of the value.
+        value : float
             Value in m, s, Hz, N, N/m or J.
 
         Returns

@@ -1,4 +1,4 @@
-"""Names of the units in which a model's numbers are given; lengths are in L throughout."""
+"""Units of a model's numbers, by name; the unit of length is L throughout."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,12 +11,13 @@ class Units:
     Attributes
     ----------
     force, energy, power : str
+        Names of the units.
     time : str
-        What T stands for.
+        Definition of the unit of time T.
     forces : mapping of str to float
-        Further units of force that are in use, and a force of 1 in each of them.
+        Further units of force, and a force of 1 in each of them.
     duration : float
-        Time in T that a motion takes which takes a filament one unit of its time.
+        Duration in T of a motion that takes a filament one unit of its time.
     """
 
     force: str
@@ -27,7 +28,7 @@ class Units:
     duration: float = 1.0
 
     def names(self) -> dict[str, str]:
-        """Return the names of all units by quantity."""
+        """Return the names of all units, by quantity."""
         return {
             "length": "L",
             "force": self.force,
@@ -38,13 +39,13 @@ class Units:
         }
 
     def force_in(self, force: float) -> dict[str, float]:
-        """Return a force in the further units, by their names."""
+        """Return the values of a force in the further units, by their names."""
         return {name: factor * force for name, factor in self.forces.items()}
 
-    def beside(self, force: float) -> str:
-        """Return a force in the further units for people, in brackets; empty without any."""
-        told = [f"{value:.6g} {name}" for name, value in self.force_in(force).items()]
-        return f" ({' or '.join(told)})" if told else ""
+    def bracketed(self, force: float) -> str:
+        """Return a text with a force in the further units, in brackets; empty without any."""
+        values = [f"{value:.6g} {name}" for name, value in self.force_in(force).items()]
+        return f" ({' or '.join(values)})" if values else ""
 
 
 #: Units of a filament of length L, bending stiffness B and normal drag zeta_perp per length.
@@ -54,10 +55,20 @@ FILAMENT_UNITS = Units(
 
 
 def chain_units(links: int) -> Units:
-    """Return the units of a chain of links with springs K between beads of drag zeta.
+    """Return the units of a chain with springs K between beads of drag zeta.
 
-    It stands for a filament with B = K l and zeta_perp = zeta / l, where l = L/N is the length of
-    a link: F L^2/B = N F L/K, and the unit of time of that filament is N^2 of the chain's.
+    The corresponding filament has B = K l and zeta_perp = zeta / l, with the length l = L/N of a
+    link: F L^2/B = N F L/K, and its unit of time is N^2 of the chain's.
+
+    Parameters
+    ----------
+    links : int
+        Number of links N, at least 1.
+
+    Returns
+    -------
+    Units
+        The units.
     """
     return Units(
         force="K/L",

@@ -23,7 +23,7 @@ from tornado.httputil import HTTPServerRequest
 from tornado.web import ErrorHandler
 
 from undula.errors import InputError
-from undula.interrupts import ENDINGS
+from undula.interrupts import END_SIGNALS
 
 #: Number of workers that may die over a task before the task is blamed; other schedulers have
 #: their own limit.
@@ -180,7 +180,7 @@ def _cluster(count: int, word: str, private: str) -> SpecCluster:
         "local_directory": private,
     }
     # Started with blocked signals, the process that tracks shared memory survives them.
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDINGS)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, END_SIGNALS)
     multiprocessing.resource_tracker.ensure_running()
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     cluster = SpecCluster(
@@ -200,7 +200,7 @@ def _cluster(count: int, word: str, private: str) -> SpecCluster:
 
 
 async def _block_endings() -> None:
-    signal.pthread_sigmask(signal.SIG_BLOCK, ENDINGS)
+    signal.pthread_sigmask(signal.SIG_BLOCK, END_SIGNALS)
 
 
 def _replace_lost(cluster: SpecCluster) -> None:

@@ -24,8 +24,9 @@ from undula.arrays import Nodes, State
 from undula.errors import InputError
 from undula.inputs.build import build_model, build_schedule, build_start
 from undula.inputs.input import RunInput, parse_input
-from undula.models.initial_states import from_state, turned
+from undula.models.initial_states import from_state
 from undula.models.model import Model
+from undula.models.perturbation import perturbed
 from undula.schema.sweep_axes import DONE, FAILED
 from undula.schema.sweep_variables import LONGEST_TEXT
 from undula.storage.run_file import run_image
@@ -207,7 +208,7 @@ def _start(request: Request, wanted: RunInput, model: Model) -> State:
     nodes = request.get("nodes")
     start = build_start(wanted, model) if nodes is None else from_state(model, nodes)
     kick, seed = request.get("kick", (0.0, 0))
-    return start if kick == 0.0 else turned(model, model.nodes(start), kick, seed=seed)
+    return start if kick == 0.0 else perturbed(model, model.nodes(start), kick, seed=seed)
 
 
 def _figures(run: Run) -> Record:

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from numba.core import event
 
-from undula.jit.cache import trouble
+from undula.jit.cache import why_not_kept
 
 _COMPILE = "numba:compile"
 _TEXT = "compiling the kernels, once per installation; this takes about half a minute"
@@ -20,7 +20,7 @@ class _FirstCompilation(event.Listener):
 
     def on_start(self, event: event.Event) -> None:  # noqa: ARG002
         if not self._said:
-            self.give_notice(trouble() or _TEXT)
+            self.give_notice(why_not_kept() or _TEXT)
 
     def on_end(self, event: event.Event) -> None:
         """Ignore the end, after which the progress of the run follows at once."""
@@ -55,4 +55,4 @@ def compilation_announced(say: Callable[[str], None]) -> Iterator[None]:
     finally:
         event.unregister(_COMPILE, listener)
         if listener.has_compiled:
-            listener.give_notice(trouble())
+            listener.give_notice(why_not_kept())

@@ -13,7 +13,8 @@ from undula.analysis.linear.spectrum import spectrum
 from undula.analysis.linear.stability import critical_curve, growth_curve, onset
 from undula.analysis.observables.linear_mode import linear_motion
 from undula.models.filament import Filament
-from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, TipLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import TableLoad
 
 METHODS: list[Method] = ["spectral", "modes", "discrete"]

@@ -27,7 +27,8 @@ from undula.analysis.linear.stability import onset as onset_of
 from undula.arrays import ComplexArray
 from undula.models.filament import Filament
 from undula.models.initial_states import leading_mode
-from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, TipLoad
+from undula.models.loads.power import PowerLoad
 from undula.models.loads.user_density import TableLoad
 
 PUBLISHED = tomllib.loads((Path(__file__).with_name("thresholds.toml")).read_text())

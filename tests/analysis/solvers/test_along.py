@@ -24,8 +24,9 @@ from undula.app.commands.follow import ParameterInterval, follow_along
 from undula.errors import InputError
 from undula.models.chain import Chain
 from undula.models.filament import Filament
-from undula.models.loads.analytic import LinearLoad, PointLoad, PowerLoad, TipLoad
+from undula.models.loads.analytic import LinearLoad, PointLoad, TipLoad
 from undula.models.loads.beads import BeadLoad
+from undula.models.loads.power import PowerLoad
 
 LINKS = 6
 BODIES = {

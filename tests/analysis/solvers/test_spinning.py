@@ -23,8 +23,9 @@ from undula.analysis.states.relative_equilibrium import TurningShape
 from undula.arrays import Array
 from undula.models.filament import Filament
 from undula.models.initial_states import from_state, kicked, planar
-from undula.models.loads.analytic import LinearLoad, Load, PointLoad, PowerLoad, TipLoad
-from undula.numerics.continuation.arclength import solved_at
+from undula.models.loads.analytic import LinearLoad, Load, PointLoad, TipLoad
+from undula.models.loads.power import PowerLoad
+from undula.numerics.continuation.arclength import solve_at
 
 SPINNING_MODELS = [
     Filament(12, TipLoad(40.0)),
@@ -487,6 +488,6 @@ def test_the_straight_state_is_no_solution_whatever_the_rate() -> None:
     straight = MODEL.unknowns(MODEL.straight())
     for rate in (0.0, state.rate):
         u = np.append(straight, rate)
-        assert solved_at(problem_of(state), u, state.force) is None
+        assert solve_at(problem_of(state), u, state.force) is None
     within = np.append(straight + 1e-9 * (state.unknowns - straight), state.rate)
-    assert solved_at(problem_of(state), within, state.force) is None
+    assert solve_at(problem_of(state), within, state.force) is None

@@ -63,7 +63,7 @@ class Resting:
         matrix, by_parameter = slopes(self.field, u, p)
         return Evaluation(self.field(u, p), DenseLinear(matrix), by_parameter)
 
-    def referred_to(self, u: Array) -> Self:  # noqa: ARG002
+    def with_reference(self, u: Array) -> Self:  # noqa: ARG002
         return self
 
     def judged(self, u: Array, p: float) -> Known:
@@ -100,7 +100,7 @@ class Turning:
             residual, DenseLinear(matrix), np.append(slopes(self.field, x, p)[1], 0.0)
         )
 
-    def referred_to(self, u: Array) -> "Turning":
+    def with_reference(self, u: Array) -> "Turning":
         return Turning(self.field, u[:-1])
 
     def judged(self, u: Array, p: float) -> Known:

@@ -15,7 +15,7 @@ from undula.analysis.states.follow_branch import UnresolvedError
 from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.arrays import Array
 from undula.models.model import Model
-from undula.numerics.continuation.arclength import Point, Steps, advance, solved_at
+from undula.numerics.continuation.arclength import Point, Steps, advance, solve_at
 from undula.numerics.continuation.problem import Problem
 
 # Arclength between a Hopf point and the first point of a branch.
@@ -90,7 +90,7 @@ def _steps(problem: Problem, hopf: Point, last: float, scale: float) -> Iterator
         return
     yield BranchStep(problem, hopf, first)
     steps, ends = Steps(first=_FIRST_STEP, scale=scale), (0.0, max(last, _ABOVE_ONSET * hopf.p))
-    for count, step in enumerate(steps_along(problem.referred_to(first.u), first, steps, ends)):
+    for count, step in enumerate(steps_along(problem.with_reference(first.u), first, steps, ends)):
         yield step
         if step.before.p < step.after.p >= last or count > _MOST_STEPS:
             return
@@ -127,7 +127,7 @@ class _Crossings:
             return after.u
         share = (force - before.p) / (after.p - before.p)
         # Many forces may lie in one step: a solve from the chord saves locating the branch at each.
-        solved = solved_at(step.problem, before.u + share * (after.u - before.u), force)
+        solved = solve_at(step.problem, before.u + share * (after.u - before.u), force)
         if solved is not None and _lies_between(step, solved[0]):
             return solved[0]
         return step.solution_at(force, self.scale)

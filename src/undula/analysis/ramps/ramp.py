@@ -24,8 +24,8 @@ from undula.analysis.runs.last_period import last_period
 from undula.analysis.runs.run import Run
 from undula.arrays import Instants, Nodes, Shapes, State
 from undula.errors import InputError, is_number
-from undula.models.initial_states import turned
 from undula.models.model import Model
+from undula.models.perturbation import perturbed
 
 #: Largest number of steps of a ramp; each step is a run of its own.
 MOST_STEPS = 10_000
@@ -234,7 +234,7 @@ def _turned(model: Model, nodes: Nodes, course: Ramp, number: int) -> State:
         return model.from_nodes(nodes)
     # A seed of its own for each step, so that a ramp can be continued at any of them.
     own = np.random.SeedSequence((course.seed, number)).generate_state(1, np.uint64)[0]
-    return turned(model, nodes, course.kick, seed=int(own))
+    return perturbed(model, nodes, course.kick, seed=int(own))
 
 
 def _step(run: Run, value: float, direction: str, began: float) -> Step:

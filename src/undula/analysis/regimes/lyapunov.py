@@ -14,7 +14,7 @@ from undula.analysis.run_settings import Schedule
 from undula.arrays import Array, State
 from undula.errors import InputError, is_number
 from undula.models.model import Model
-from undula.numerics.integration.lyapunov import BLOCKS, TURNING_IN, growth, mean_rates
+from undula.numerics.integration.lyapunov import BLOCKS, TRANSIENT_SHARE, growth, mean_rates
 from undula.numerics.integration.schemes import NDF
 from undula.numerics.integration.status import Status
 from undula.numerics.integration.stepper_state import TIME, StepperState, start
@@ -173,7 +173,7 @@ def lyapunov(
         if progress:
             progress(len(blocks), BLOCKS)
     values, errors = mean_rates(blocks, rtol)
-    return Lyapunov(values, errors, symmetries, duration * (1.0 - TURNING_IN))
+    return Lyapunov(values, errors, symmetries, duration * (1.0 - TRANSIENT_SHARE))
 
 
 def _begin(model: Model, state: Array, duration: float) -> StepperState:

@@ -12,7 +12,7 @@ import xarray as xr
 
 from undula.analysis.observables.trajectory import Motion
 from undula.analysis.runs.run import Run
-from undula.models.description import model_words
+from undula.models.description import describe_model
 from undula.models.units import FILAMENT_UNITS, Units
 from undula.schema.formats import RUN_FORMAT
 
@@ -55,7 +55,7 @@ def dataset_of(
         variables |= _variables(run.close_up, units, "close_")
     links = run.motion.nodes.shape[1] - 1
     complete = inputs or {"model": _fields(run.model), "time": _fields(run.schedule)}
-    summary = run.summary() | {"load": load or model_words(run.model)}
+    summary = run.summary() | {"load": load or describe_model(run.model)}
     return xr.Dataset(
         variables,
         coords={

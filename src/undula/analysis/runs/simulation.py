@@ -25,7 +25,7 @@ from undula.analysis.runs.settling import MotionRates, SettlingDetector
 from undula.analysis.runs.stop_rule import Decision, Observation
 from undula.arrays import Array, State
 from undula.errors import InputError
-from undula.models.given_shapes import numbers, refuse_misfits
+from undula.models.given_shapes import finite_array, refuse_misfits
 from undula.models.model import Model
 from undula.numerics.integration import stepper_state as names
 from undula.numerics.integration.schemes import NDF
@@ -106,7 +106,7 @@ class Simulation:
     def begin(cls, model: Model, x: State, schedule: Schedule) -> Self:
         """Return a new run from the state x (model.size,) at time 0; raise InputError if wrong."""
         refuse_too_large(model, schedule)
-        x = numbers(x, "the start")
+        x = finite_array(x, "the start")
         if x.shape != (model.size,):
             shapes = f"a start of shape {x.shape} is no state of this model"
             raise InputError(f"{shapes}; give {model.size} finite numbers")

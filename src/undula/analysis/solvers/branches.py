@@ -141,7 +141,7 @@ def follow_from_onset(
             SearchStatus.NOT_CONVERGED,
             f"Newton's method finds no {kind} next to the Hopf point {hopf.p:.6g}",
         )
-    problem = problem.referred_to(first.u)
+    problem = problem.with_reference(first.u)
     state = solver.judge(model, FORCE)(problem, first.u, first.p)
     family = solver.family(state, FORCE, scale)
     steps = Steps(first=_FIRST_ARCLENGTH, scale=scale)

@@ -21,7 +21,7 @@ from undula.arrays import Array
 from undula.errors import InputError
 from undula.models.initial_states import from_state
 from undula.models.model import Model
-from undula.numerics.continuation.arclength import Point, Steps, solved_at, with_tangent
+from undula.numerics.continuation.arclength import Point, Steps, solve_at, with_tangent
 from undula.numerics.continuation.problem import Evaluation
 from undula.numerics.linalg.bordered import BorderedBand
 
@@ -51,7 +51,7 @@ class RestingShape:
         moving = self.model.equations.differential
         return np.asarray(moving / np.count_nonzero(moving))
 
-    def referred_to(self, u: Array) -> Self:  # noqa: ARG002
+    def with_reference(self, u: Array) -> Self:  # noqa: ARG002
         """Return the problem itself, which has no symmetry."""
         return self
 
@@ -101,7 +101,7 @@ def find_equilibrium(model: Model, guess: Equilibrium | None = None) -> Equilibr
     problem = RestingShape(model, FORCE)
     if guess is not None:
         y = model.unknowns(model.admissible(from_state(model, guess.nodes)))
-        solved = solved_at(problem, y, model.load.force)
+        solved = solve_at(problem, y, model.load.force)
         if solved is None:
             return NotFound(
                 SearchStatus.NOT_CONVERGED,

@@ -173,7 +173,7 @@ def _shooting(model: Model, parameter: str) -> Shooting:
     flat = model.with_(confined=True)
     return (_Continuous if flat.unwrapped else Shooting)(
         equations_at=lambda p: changed(flat, parameter, p).equations,
-        closure=OrbitSymmetry(flat.equations.mirrored),
+        symmetry=OrbitSymmetry(flat.equations.mirrored),
         intervals=INTERVALS,
         method=METHOD,
     )
@@ -246,7 +246,7 @@ def _exponents(
 ) -> tuple[ComplexArray, float]:
     """Return the exponents of a half-period map, and the error of its known multiplier."""
     spectrum = floquet(monodromy, direction[:, None], np.array([expected]))
-    return spectrum.exponents(half), float(spectrum.known_errors[0])
+    return spectrum.exponents(half), float(spectrum.trivial_errors[0])
 
 
 def _bifurcation_kind(state: Flapping, index: int) -> str:

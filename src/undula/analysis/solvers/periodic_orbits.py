@@ -160,7 +160,7 @@ def periodic_shooting(model: Model, parameter: str, intervals: int) -> Shooting:
     turns = Rotation(equations.rotated, generator) if model.axisymmetric else None
     return Shooting(
         equations_at=lambda p: changed(model, parameter, p).equations,
-        closure=OrbitSymmetry(rotation=turns),
+        symmetry=OrbitSymmetry(rotation=turns),
         intervals=intervals,
         method=METHOD,
     )
@@ -212,7 +212,7 @@ def periodic_state(model: Model, orbit: Orbit) -> Periodic:
         unknowns=shot.flow.stages[:, -1],
         residual=float(np.abs((shot.end - shot.y)[shot.moving]).max()),
         exponents=spectrum.exponents(shot.duration),
-        trivial=tuple(float(error) for error in spectrum.known_errors),
+        trivial=tuple(float(error) for error in spectrum.trivial_errors),
     )
 
 

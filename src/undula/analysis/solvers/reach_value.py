@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from undula.arrays import Array
-from undula.numerics.continuation.arclength import Point, Steps, follow, located, solved_at
+from undula.numerics.continuation.arclength import Point, Steps, solve_at, trace
+from undula.numerics.continuation.locate import locate
 
 # Share of the scale of the parameter to which the value is approached before it is solved for.
 _NEAR = 1e-3
@@ -49,8 +50,8 @@ class BranchStep:
         def distance(point: Point) -> float:
             return point.p - value
 
-        near = located(self.problem, self.before, self.after, distance, scale, _NEAR)
-        solved = near and solved_at(self.problem, near.u, value)
+        near = locate(self.problem, self.before, self.after, distance, scale, _NEAR)
+        solved = near and solve_at(self.problem, near.u, value)
         return solved[0] if solved else None
 
 
@@ -78,9 +79,9 @@ def steps_along(
 ) -> Iterator[BranchStep]:
     """Yield the steps of a branch from a point on; arguments are those of `arclength.follow`."""
     before = start
-    for after in follow(problem, start, steps, ends):
+    for after in trace(problem, start, steps, ends):
         yield BranchStep(problem, before, after)
-        before, problem = after, problem.referred_to(after.u)
+        before, problem = after, problem.with_reference(after.u)
 
 
 def reach_value(

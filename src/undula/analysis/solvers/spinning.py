@@ -22,7 +22,7 @@ from undula.arrays import Array, Nodes
 from undula.errors import InputError
 from undula.models.initial_states import from_state
 from undula.models.model import Model
-from undula.numerics.continuation.arclength import Point, Steps, solved_at
+from undula.numerics.continuation.arclength import Point, Steps, solve_at
 
 # Largest number of steps along a branch towards a force.
 _MOST_STEPS = 400
@@ -116,7 +116,7 @@ def _solved_from(model: Model, nodes: Nodes, rate: float) -> Spinning | NotFound
     y = model.unknowns(model.admissible(from_state(model, nodes)))
     problem = TurningShape(model, FORCE, y, max(1.0, abs(rate)))
     u, force = np.append(y, rate), model.load.force
-    solved = solved_at(problem, u, force)
+    solved = solve_at(problem, u, force)
     if solved is None:
         residual = _residual(problem, u, force)
         return NotFound(

@@ -10,7 +10,8 @@ import numpy as np
 from undula.analysis.states.branch import Bifurcation, Branch, S
 from undula.analysis.states.state import State
 from undula.arrays import Array
-from undula.numerics.continuation.arclength import Point, Steps, follow, located, with_tangent
+from undula.numerics.continuation.arclength import Point, Steps, trace, with_tangent
+from undula.numerics.continuation.locate import locate
 from undula.numerics.continuation.problem import Problem
 
 # Error of the location of a bifurcation, relative to the scale of the parameter.
@@ -96,13 +97,13 @@ def follow_branch(
         Not complete unless it reached `to`.
     """
     upwards = np.sign(to - p) or 1.0
-    problem = family.problem.referred_to(u)
+    problem = family.problem.with_reference(u)
     flat = Point(u, p, np.zeros_like(u), upwards * family.scale)
     point = start or with_tangent(problem, flat, family.scale)
     states, values = [family.judge(problem, u, p)], [p]
     bifurcations: list[Bifurcation[S]] = []
     ends = min(p, to, p if least is None else least), max(p, to)
-    for reached in follow(problem, point, steps, ends):
+    for reached in trace(problem, point, steps, ends):
         if progress:
             progress(reached.p)
         try:
@@ -119,7 +120,7 @@ def follow_branch(
             or any(enough(bifurcation) for bifurcation in bifurcations)
         ):
             break
-        point, problem = reached, problem.referred_to(reached.u)
+        point, problem = reached, problem.with_reference(reached.u)
     complete = values[-1] == to
     return Branch(family.parameter, np.array(values), tuple(states), tuple(bifurcations), complete)
 
@@ -172,7 +173,7 @@ class _Interval(Generic[S]):
 
     def _zero_of(self, test: Callable[[Point], float]) -> Point | None:
         scale = self.family.scale
-        return located(self.problem, self.before, self.after, test, scale, _LOCATION_ERROR)
+        return locate(self.problem, self.before, self.after, test, scale, _LOCATION_ERROR)
 
     def _rate(self, index: int, point: Point) -> float:
         return float(self._state(point).exponents[index].real)

@@ -60,7 +60,7 @@ class TurningShape:
         weights: Array = np.append(moving / np.count_nonzero(moving), self.rate_scale**-2)
         return weights
 
-    def referred_to(self, u: Array) -> Self:
+    def with_reference(self, u: Array) -> Self:
         """Return the problem with the phase fixed by a solution."""
         return replace(self, reference=u[:-1])
 
@@ -80,10 +80,12 @@ class TurningShape:
         y, rate, equations = u[:-1], float(u[-1]), model.equations
         velocity, dragged = equations.turning(y)
         matrix, _ = equations.parts(y, rate * velocity, rate)
-        phase, soft, least = self._phase
+        phase, shifted, least = self._phase
         if phase @ velocity < least:
             raise StraightShapeError
-        linear = BorderedBand(matrix, dragged[:, None], phase[None, :], np.zeros((1, 1)), soft=soft)
+        linear = BorderedBand(
+            matrix, dragged[:, None], phase[None, :], np.zeros((1, 1)), shifted=shifted
+        )
         residual = equations.residual(y, rate * velocity)
         return np.append(residual, phase @ y), linear
 

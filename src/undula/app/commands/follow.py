@@ -223,7 +223,7 @@ def _bifurcation_line(point: dict[str, Any], units: Units) -> str:
     if point["error"] is not None or point["error_of"] == LINKS:
         cure = "" if "not_converged" in point else CURE
         place = with_error_of(point["value"], point["error"], point, unit, cure).rstrip()
-    place += units.beside(point["value"]) if further else ""
+    place += units.bracketed(point["value"]) if further else ""
     second = point["second_frequency"]
     second_text = f", second frequency {second:.6g}" if second is not None else ""
     stability = f", stability {point['stability']}" if "stability" in point else ""

@@ -92,7 +92,7 @@ def _onset_lines(onset: Onset, at_force: Spectrum, units: Units) -> Iterator[tup
 
 
 def _force(force: float, error: float | None, units: Units) -> str:
-    return f"{with_error(force, error)} {units.force}{units.beside(force)}"
+    return f"{with_error(force, error)} {units.force}{units.bracketed(force)}"
 
 
 def _crossing_lines(crossing: Crossing, unit: str, force_unit: str) -> Iterator[tuple[str, str]]:

@@ -124,7 +124,7 @@ def force_text(answer: Mapping[str, Any], units: Units) -> str:
         text = on_links(value, answer["solver_error"], answer["links"], units.force)
     else:
         text = f"{with_error(value, error)} {units.force}"
-    return f"{text}{units.beside(value)}"
+    return f"{text}{units.bracketed(value)}"
 
 
 def links_text(answer: Mapping[str, Any]) -> str:

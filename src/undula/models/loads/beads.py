@@ -1,4 +1,4 @@
-"""Follower forces on single beads of a chain, each against the tangent of the link it ends."""
+"""Follower forces on single beads of a chain, each opposite to the tangent of the link below it."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,25 +13,32 @@ from undula.models.loads.analytic import Load
 
 @dataclass(frozen=True)
 class BeadLoad(Load):
-    """A total force shared equally by some beads, or by all.
+    """A follower force divided equally among some beads of a chain, or among all.
 
-    Attributes
+    Parameters
     ----------
     force : float
-        Total force F, finite, at least 0.
-    beads : tuple of int or "all"
-        Numbers of the beads, counted from 1 at the base; any iterable is taken.
+        Total force F [K/L], finite, at least 0.
+    beads : iterable of int or "all"
+        Numbers of the beads, counted from 1 at the base; stored as a sorted tuple.
 
     Raises
     ------
     InputError
-        There is no bead, one twice, or one with no number from 1 on.
+        The force is out of its range; there is no bead, or one twice, or a number below 1.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> un.BeadLoad(8.0, (4, 2))
+    BeadLoad(force=8.0, beads=(2, 4))
+    >>> model = un.Chain(4, un.BeadLoad(8.0, "all"))
     """
 
     beads: tuple[int, ...] | Literal["all"] = "all"
 
     def __post_init__(self) -> None:
-        """Refuse what is no list of beads."""
+        """Check the values."""
         super().__post_init__()
         if self.beads == "all":
             return
@@ -45,7 +52,7 @@ class BeadLoad(Load):
         object.__setattr__(self, "beads", tuple(sorted(map(int, given))))
 
     def shares(self, links: int) -> tuple[Links, Links]:
-        """Return what each link puts on its outer bead; nothing acts on the inner one."""
+        """Return the force of each link on its outer bead, and zeros for the inner bead."""
         loaded = range(1, links + 1) if self.beads == "all" else self.beads
         if max(loaded) > links:
             raise InputError(

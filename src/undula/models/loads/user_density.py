@@ -1,8 +1,8 @@
-"""Axial follower forces whose density the user gives: as a table, or as a function.
+"""Axial follower forces with a density of the user, as a table or as a function.
 
-The shape of the density is what counts; it is scaled to the total force. Both are held as a
-piecewise polynomial: straight lines between the points of a table, and for a function whatever
-follows it to round-off (`undula.models.loads.piecewise`).
+A density is scaled to the total force, so that its unit is arbitrary. It is stored as a piecewise
+polynomial: linear between the points of a table, and fitted to round-off for a function
+(`undula.models.loads.piecewise`).
 """
 
 import reprlib
@@ -19,54 +19,70 @@ import numpy as np
 from undula.arrays import Array, Points
 from undula.errors import InputError, is_number
 from undula.models.loads.analytic import DensityLoad
-from undula.models.loads.piecewise import Density, PiecewiseDensity, followed, largest_of, spread_of
+from undula.models.loads.piecewise import (
+    Density,
+    PiecewiseDensity,
+    fitted_pieces,
+    largest_of,
+    piecewise_density,
+)
 
-#: How far from 0 and 1 the ends of a table may be, by the round-off of whoever made it.
+#: Largest distance of the ends of a table from 0 and 1, by round-off.
 _END_ROUND_OFF = 1e-12
-#: A change of slope that moves no point by more, relative to the largest density, is round-off.
+#: Largest deviation from a line, relative to the largest density, that counts as round-off.
 _KINK_ROUND_OFF = 1e-13
 
 
 class _GivenLoad(DensityLoad):
-    """A load whose density is a piecewise polynomial."""
+    """A load with a piecewise polynomial density."""
 
     @property
     @abstractmethod
-    def _spread(self) -> PiecewiseDensity:
-        """How a force of 1 would be spread."""
+    def _piecewise(self) -> PiecewiseDensity:
+        """The density for a total force of 1."""
 
     def force_below(self, s: Points) -> Points:
         """Return the integral of the density over [0, s]."""
-        return self.force * self._spread.force_below(s)
+        return self.force * self._piecewise.force_below(s)
 
     def moment_below(self, s: Points) -> Points:
         """Return the integral of s times the density over [0, s]."""
-        return self.force * self._spread.moment_below(s)
+        return self.force * self._piecewise.moment_below(s)
 
 
 @dataclass(frozen=True)
 class TableLoad(_GivenLoad):
-    """A density given at arc lengths, linear in between, scaled to the total force.
+    """A follower force with a density given at arc lengths, with linear interpolation.
 
-    Attributes
+    Parameters
     ----------
-    s : tuple of float
-        Arc lengths [L], at least 2, increasing from 0 to 1; any sequence is taken.
-    density : tuple of float
-        The density at each of them, in any unit; it may be negative in places, but not in total.
+    force : float
+        Total force F [B/L^2], finite, at least 0.
+    s : sequence of float, shape (n,)
+        Arc lengths [L], at least 2, increasing from 0 to 1; stored as a tuple.
+    density : sequence of float, shape (n,)
+        The density at these arc lengths, in any unit; it may be negative in places, but not in
+        total. Stored as a tuple.
 
     Raises
     ------
     InputError
-        A value is none, the lengths differ, s does not increase from 0 to 1, or the total is not
-        positive.
+        A value is not a finite number, the lengths differ, s does not increase from 0 to 1, or the
+        total is not positive.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> load = un.TableLoad(100.0, s=(0.0, 0.5, 1.0), density=(0.0, 1.0, 1.0))
+    >>> f"{load.force_below(0.5):.4f}"
+    '33.3333'
     """
 
     s: tuple[float, ...]
     density: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Refuse values that are no load."""
+        """Check the values."""
         super().__post_init__()
         s, density = _numbers(self, "s"), _numbers(self, "density")
         if len(s) != len(density):
@@ -76,21 +92,21 @@ class TableLoad(_GivenLoad):
             )
         object.__setattr__(self, "s", _covering(s))
         object.__setattr__(self, "density", density)
-        _ = self._spread  # refuses a total that does not push
+        _ = self._piecewise  # raises InputError for a total that is not positive
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """The inner arc lengths at which the slope of the density changes."""
+        """The inner arc lengths [L] at which the slope of the density changes."""
         s, density = np.array(self.s), self._relative_density
         along = (s[1:-1] - s[:-2]) / (s[2:] - s[:-2])
         straight = density[:-2] + along * (density[2:] - density[:-2])
         return tuple(s[1:-1][np.abs(density[1:-1] - straight) > _KINK_ROUND_OFF].tolist())
 
     @cached_property
-    def _spread(self) -> PiecewiseDensity:
-        at = self._relative_density
-        lines = np.array([0.5 * (at[:-1] + at[1:]), 0.5 * (at[1:] - at[:-1])])
-        return spread_of("TableLoad", np.array(self.s), lines, largest_of(self.density))
+    def _piecewise(self) -> PiecewiseDensity:
+        f = self._relative_density
+        lines = np.array([0.5 * (f[:-1] + f[1:]), 0.5 * (f[1:] - f[:-1])])
+        return piecewise_density("TableLoad", np.array(self.s), lines, largest_of(self.density))
 
     @property
     def _relative_density(self) -> Array:
@@ -99,12 +115,12 @@ class TableLoad(_GivenLoad):
 
 
 @dataclass(frozen=True)
-class _Resolved:
-    """A density function, beside how a force is spread by it: found once, for every force."""
+class _FittedDensity:
+    """A density function with its piecewise polynomial, fitted once for all forces."""
 
     function: Density
     kinks: tuple[float, ...]
-    spread: PiecewiseDensity = field(compare=False)
+    piecewise: PiecewiseDensity = field(compare=False)
 
     def __call__(self, s: Points) -> Any:
         return self.function(s)
@@ -115,29 +131,39 @@ class _Resolved:
 
 @dataclass(frozen=True)
 class ProfileLoad(_GivenLoad):
-    """A density given as a function of arc length, scaled to the total force.
+    """A follower force with a density given as a function of arc length.
 
-    Attributes
+    Parameters
     ----------
+    force : float
+        Total force F [B/L^2], finite, at least 0.
     density : callable
         Takes arc lengths [L] as an array of shape (n,), returns the density at each of them, in
         any unit; it may be negative in places, but not in total. A feature narrower than 1/500 of
-        the length may be overlooked unless kinks stand beside it.
-    kinks : tuple of float
-        Arc lengths inside (0, 1) at which the density jumps or has a kink; any sequence is taken.
+        the length may be missed unless it is enclosed by kinks.
+    kinks : sequence of float
+        Arc lengths inside (0, 1) [L] at which the density jumps or has a kink; stored as a tuple.
 
     Raises
     ------
     InputError
-        The function fails, gives values that are none, or is not smooth at a place that `kinks`
-        does not name; a kink is not inside (0, 1), or the total is not positive.
+        The function fails, returns values that are not finite numbers, or is not smooth at a place
+        that is not in `kinks`; a kink is not inside (0, 1), or the total is not positive.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import undula as un
+    >>> load = un.ProfileLoad(75.0, lambda s: np.where(s < 0.8, 0.0, 1.0), kinks=(0.8,))
+    >>> f"{load.force_below(0.9):.4f}"
+    '37.5000'
     """
 
     density: Density
     kinks: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse what is no load, and resolve the density unless that has been done."""
+        """Check the values, and fit the density unless that has been done."""
         super().__post_init__()
         kinks = _numbers(self, "kinks")
         for i, kink in enumerate(kinks):
@@ -146,43 +172,45 @@ class ProfileLoad(_GivenLoad):
                     f"ProfileLoad: kinks[{i}] = {kink} has to be an arc length inside (0, 1)"
                 )
         object.__setattr__(self, "kinks", tuple(sorted(set(kinks))))
-        known = self.density
-        function = known.function if isinstance(known, _Resolved) else known
+        given_density = self.density
+        function = (
+            given_density.function if isinstance(given_density, _FittedDensity) else given_density
+        )
         if not callable(function):
             raise InputError(
                 f"ProfileLoad: density is of type {type(function).__name__}; give a function of"
                 " arc length, or the points of a TableLoad"
             )
-        if not (isinstance(known, _Resolved) and known.kinks == self.kinks):
-            spread = spread_of("ProfileLoad", *followed(function, self.kinks))
-            object.__setattr__(self, "density", _Resolved(function, self.kinks, spread))
+        if not (isinstance(given_density, _FittedDensity) and given_density.kinks == self.kinks):
+            piecewise = piecewise_density("ProfileLoad", *fitted_pieces(function, self.kinks))
+            object.__setattr__(self, "density", _FittedDensity(function, self.kinks, piecewise))
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """The inner ends of the pieces on which a polynomial follows the density."""
-        return tuple(self._spread.edges[1:-1].tolist())
+        """The inner ends [L] of the pieces of the fitted density."""
+        return tuple(self._piecewise.edges[1:-1].tolist())
 
     @property
-    def _spread(self) -> PiecewiseDensity:
-        assert isinstance(self.density, _Resolved)
-        return self.density.spread
+    def _piecewise(self) -> PiecewiseDensity:
+        assert isinstance(self.density, _FittedDensity)
+        return self.density.piecewise
 
 
 def _numbers(load: DensityLoad, name: str) -> tuple[float, ...]:
-    """Return a sequence of the user's as floats."""
+    """Return a user's sequence as floats."""
     given, place = getattr(load, name), f"{type(load).__name__}: {name}"
     if not isinstance(given, Iterable):
         raise InputError(f"{place} = {reprlib.repr(given)} has to be a sequence of numbers")
     values = given.tolist() if isinstance(given, np.ndarray) else list(given)
     for i, value in enumerate(values):
         if not is_number(value):
-            shown = value if isinstance(value, Real) else reprlib.repr(value)
-            raise InputError(f"{place}[{i}] = {shown} has to be a finite number")
+            text = value if isinstance(value, Real) else reprlib.repr(value)
+            raise InputError(f"{place}[{i}] = {text} has to be a finite number")
     return tuple(float(value) for value in values)
 
 
 def _covering(given: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the arc lengths of a table, its ends freed from round-off; refuse what is no table."""
+    """Return the checked arc lengths of a table, with its ends rounded to 0 and 1."""
     if len(given) < 2:
         number = f"{len(given)} value{'s' * (len(given) != 1)}"
         raise InputError(f"TableLoad: s has {number}; give at least 2, from 0 to 1")

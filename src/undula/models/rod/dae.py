@@ -1,6 +1,6 @@
-"""The linked rod as a differential equation with constraints, for solvers of states.
+"""The linked rod as a differential-algebraic equation, for solvers of states.
 
-It implements `undula.models.equations.ModelEquations` on top of the compiled residual and its exact
+It implements `undula.models.equations.ModelEquations` with the compiled residual and its exact
 derivative.
 """
 
@@ -16,32 +16,34 @@ from undula.jit.borrowed import borrowed
 from undula.jit.compilation import entry
 from undula.models.rod.layout import Layout
 from undula.models.rod.newton_matrix import exact_derivative
-from undula.models.rod.sizes import belongs
+from undula.models.rod.sizes import sizes_match
 from undula.models.rod.tables import DirectedRod, Rod
-from undula.numerics.integration.system import (
-    apply_drag,
-    derivative_half_bandwidth,
-    generator,
-    residual,
-)
+from undula.numerics.integration.matrices import derivative_half_bandwidth
+from undula.numerics.integration.system import apply_drag, generator, residual
 
 
-@entry("y (n), w (n), out (n)", where=lambda system, n: belongs(borrowed(system), n))
+@entry("y (n), w (n), out (n)", where=lambda system, n: sizes_match(borrowed(system), n))
 def balance(system: Any, y: Any, w: Any, out: Any) -> None:
     """Write the residual R(x) w - f and the constraints to out (n,)."""
     residual(borrowed(system), borrowed(y), borrowed(w), 1.0, borrowed(out))
 
 
-@entry("y (n), out (n), dragged (n)", where=lambda system, n: belongs(borrowed(system), n))
+@entry("y (n), out (n), dragged (n)", where=lambda system, n: sizes_match(borrowed(system), n))
 def turning(system: Any, y: Any, out: Any, dragged: Any) -> None:
-    """Write S x, the velocity of a unit rate of turning, to out, and R(x) S x to dragged."""
+    """Write the velocity S x of a unit rate of rotation, and R(x) S x, to out and dragged."""
     generator(system, y, out)
     apply_drag(system, y, out, dragged)
 
 
 @dataclass(frozen=True)
 class RodFlow:
-    """The equations of a linked rod in its vector y (n,) of positions and multipliers."""
+    """The equations of a linked rod in its vector y (n,) of positions and multipliers.
+
+    Attributes
+    ----------
+    system : Rod
+        Its tables.
+    """
 
     system: Rod
 
@@ -73,7 +75,7 @@ class RodFlow:
         return out
 
     def parts(self, y: Array, w: Array, turn: float) -> tuple[Array, Array]:
-        """Return bands (n, 2 b + 1) of d residual / dy, plus `turn` R S, and of R."""
+        """Return the bands (n, 2 b + 1) of d residual / dy, plus `turn` R S, and of R."""
         whole = np.empty((y.size, 2 * self.half_bandwidth + 1))
         drag, d = np.empty_like(whole), int(self.system.dimension)
         exact_derivative(self.system, y, w, 1.0, turn, whole)
@@ -100,14 +102,25 @@ class RodFlow:
         return self.layout.from_plane(y)
 
     def mirrored(self, y: Array) -> Array:
-        """Return vectors (..., n) with x reflected, and with it the sense of unwrapped angles.
+        """Return vectors reflected in the plane x = 0.
 
-        A first director that stands on the mirror at the clamp becomes the opposite of its image.
+        Unwrapped angles change their sign. The first director, normal to the mirror at the clamp,
+        becomes the opposite of its image.
+
+        Parameters
+        ----------
+        y : ndarray, shape (..., n)
+            Vectors of positions and multipliers.
+
+        Returns
+        -------
+        ndarray, shape (..., n)
+            Their reflections.
 
         Raises
         ------
         InputError
-            Natural curvature about the second director leaves no mirror symmetry.
+            Natural curvature about the second director breaks the symmetry.
         """
         signs = np.ones(self.layout.stride)
         signs[0] = -1.0
@@ -129,7 +142,7 @@ class RodFlow:
         links = np.diff(y.reshape(-1, m)[:, :d], axis=0, prepend=0.0)
         count = links.shape[0]
         across = np.linalg.svd(links[:, None, :])[2][:, 1:, :]
-        # What turns a link moves all nodes from its outer end on.
+        # The rotation of a link moves all nodes from its outer end on.
         raw = np.zeros((count, m, count, d - 1))
         raw[:, :d] = np.tri(count)[:, None, :, None] * across.transpose(2, 0, 1)
         return np.asarray(np.linalg.qr(raw.reshape(y.size, -1))[0])

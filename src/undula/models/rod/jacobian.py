@@ -18,7 +18,7 @@ import numpy as np
 from undula.jit.compilation import kernel
 from undula.models.rod.joint import stiffening, stiffening_slope
 from undula.models.rod.residual import cosine_kernel, mean_tangent_kernel, tangents_kernel
-from undula.numerics.integration.system import derivative_half_bandwidth
+from undula.numerics.integration.matrices import derivative_half_bandwidth
 
 
 @cache
@@ -43,13 +43,13 @@ def drag_block_kernel(rod: Any) -> Callable[..., Any]:
 
 @cache
 def link_blocks_kernel(rod: Any) -> Callable[..., Any]:
-    """Return `link_blocks(system, y, t, l, blocks)`: blocks[i, s] = dq_i / de_{i-1+s}."""
+    """Return `link_blocks(system, y, t, l, blocks)`, with blocks[i, s] = dq_i / de_{i-1+s}."""
     d, m, extensible = rod.dimension, rod.stride, rod.extensible
     cosine = cosine_kernel(d)
 
     @kernel
     def project(t: Any, length: Any, k: Any, block: Any) -> None:
-        """Turn d/dt_k into d/de_k."""
+        """Convert d/dt_k to d/de_k, in place."""
         for a in range(d):
             along = 0.0
             for b in range(d):
@@ -106,7 +106,7 @@ def link_blocks_kernel(rod: Any) -> Callable[..., Any]:
 
 @cache
 def derivative_kernel(rod: Any, link_blocks: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `derivative(system, y, w, c, turn, band)`, exact."""
+    """Return `derivative(system, y, w, c, turn, band)`, the exact derivative for a kind of rod."""
     d, m, extensible = rod.dimension, rod.stride, rod.extensible
     half = derivative_half_bandwidth(rod)
     tangents, cosine, drag_block = tangents_kernel(rod), cosine_kernel(d), drag_block_kernel(rod)
@@ -125,7 +125,7 @@ def derivative_kernel(rod: Any, link_blocks: Callable[..., Any]) -> Callable[...
 
     @kernel
     def tangent_block(t: Any, length: Any, k: Any, block: Any) -> None:
-        """dt_k / de_k."""
+        """Write dt_k / de_k to block (d, d)."""
         for a in range(d):
             for b in range(d):
                 block[a, b] = 1.0 / length[k] if a == b else 0.0
@@ -189,7 +189,7 @@ def derivative_kernel(rod: Any, link_blocks: Callable[..., Any]) -> Callable[...
         shortfall = 0.0
         clamp = np.zeros(d)
         clamp[d - 1] = 1.0
-        for j in range(i, min(i + 2, n)):  # the joints at the foot and at the head of link i
+        for j in range(i, min(i + 2, n)):  # the joints below and above link i
             c = cosine(t, j)
             shortfall += system.joint[j] * stiffening(c) * (1.0 - c)
             slope = system.joint[j] * (stiffening_slope(c) * (1.0 - c) - stiffening(c))

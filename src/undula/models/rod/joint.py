@@ -1,9 +1,9 @@
 """The elastic joint between two links: energy K psi^2 / 2 of the angle psi between them.
 
-Its moment is needed as g(c) = psi / sin(psi), a smooth function of c = cos(psi) that is 1 for
-aligned links and infinite for folded ones (psi = pi). There the energy has its kink: the moment is
-K pi on either side and changes its direction at once. Within `FOLDED` of pi, g stays what it is
-there, so that the moment is K g sin(psi), which passes through 0: the kink is rounded off.
+Its moment enters as g(c) = psi / sin(psi), a smooth function of c = cos(psi) that is 1 for aligned
+links and infinite for folded links (psi = pi). There the energy has a kink: the moment is K pi on
+either side, with opposite directions. Within `FOLDED` of pi, g is constant, so that the moment is
+K g sin(psi), which passes through 0: the kink is rounded off.
 """
 
 import math
@@ -17,8 +17,8 @@ _SERIES_BELOW = 0.03
 _SERIES = tuple(
     math.prod([2.0 * k / (2.0 * k + 1.0) for k in range(1, n + 1)], start=1.0) for n in range(14)
 )
-#: Angle from pi within which the kink is rounded off [rad]: links that are 1e-7 too long, as those
-#: of a run may be, change sin(psi)^2 by less than a hundredth of what it is there.
+#: Angle from pi within which the kink is rounded off [rad]. At this angle a relative error of 1e-7
+#: in the length of links, as in a run, changes sin(psi)^2 by less than a hundredth.
 FOLDED = 1e-2
 _FOLDED_COSINE = -math.cos(FOLDED)
 _FOLDED_STIFFENING = (math.pi - FOLDED) / math.sin(FOLDED)
@@ -33,7 +33,7 @@ def stiffening(c: Any) -> Any:
     """Return g = psi / sin(psi) at c = cos(psi)."""
     z = 0.5 * (1.0 - c)
     if z < _SERIES_BELOW:
-        # By fours, which do not wait for each other.
+        # Groups of four terms, which are independent of one another.
         low = _SERIES[0] + _SERIES[1] * z + (_SERIES[2] + _SERIES[3] * z) * z * z
         middle = _SERIES[4] + _SERIES[5] * z + (_SERIES[6] + _SERIES[7] * z) * z * z
         high = _SERIES[8] + _SERIES[9] * z + (_SERIES[10] + _SERIES[11] * z) * z * z
@@ -75,7 +75,7 @@ def stiffening_curvature(c: Any) -> Any:
 def joint_energy(chord: Any) -> Any:
     """Return the energy of a joint with K = 1 at chord = |t - t'|^2 = 2 (1 - cos(psi)).
 
-    The chord serves small angles, which their cosine does not resolve.
+    The chord resolves small angles, which the cosine does not.
     """
     if chord > _FOLDED_CHORD:
         return _FOLDED_ENERGY + 0.5 * _FOLDED_STIFFENING * (chord - _FOLDED_CHORD)

@@ -1,4 +1,4 @@
-"""Lengths that the links of a rod have: exact ones, or those at which stretching meets tension."""
+"""Lengths of the links of a rod: exact, or in balance between stretching and tension."""
 
 from typing import Any
 
@@ -12,7 +12,20 @@ from undula.numerics.integration.system import RATES
 
 
 def admissible(system: Any, x: State) -> State:
-    """Return the shape of x with the lengths that links of a rod with these tables have to have."""
+    """Return the shape of x with the lengths that the tables prescribe.
+
+    Parameters
+    ----------
+    system : Rod
+        The tables.
+    x : ndarray, shape (size,)
+        Positions of the nodes.
+
+    Returns
+    -------
+    ndarray, shape (size,)
+        Positions with the same tangents.
+    """
     count, dimension = system.joint.size, system.dimension
     links = np.array(x, dtype=float).reshape(count, dimension)
     links[1:] -= links[:-1].copy()
@@ -24,7 +37,17 @@ def admissible(system: Any, x: State) -> State:
 
 
 def straight(system: Any) -> State:
-    """Return the straight state along the axis, an equilibrium; extensible links are short.
+    """Return the straight equilibrium along the axis, with compressed extensible links.
+
+    Parameters
+    ----------
+    system : Rod
+        The tables.
+
+    Returns
+    -------
+    ndarray, shape (size,)
+        Positions of the nodes.
 
     Raises
     ------
@@ -48,7 +71,7 @@ def straight(system: Any) -> State:
 
 
 def _rigid_tension(system: Any, tangents: Array) -> Links:
-    """Return the tensions (N,) that rigid links with these tangents would have."""
+    """Return the tensions (N,) of rigid links with these tangents."""
     count, dimension = tangents.shape
     rigid = (PlanarRod if dimension == 2 else SpatialRod)(*system)
     unknowns = np.zeros((count, dimension + 1))

@@ -1,35 +1,38 @@
-"""Joints that bend by natural angles and not alike in all directions: links with directors.
+"""Links with a material frame: joints with natural angles and anisotropic bending stiffness.
 
-Each link carries directors a, b = t x a across its tangent t. A joint bends without twist: they go
-from the link below, t, to the one above, t', by the smallest rotation that takes t to t',
+Each link has directors a, b = t x a normal to its tangent t. A joint bends without twist: directors
+are transported from the link below, t, to the link above, t', by the smallest rotation of t to t',
 
     P v = v - (t'. v) / (1 + c) (t + t'),    c = t . t',    v . t = 0.
 
 The bend of the joint is the vector g t x t', g = psi / sin psi, with equal components on the
-directors of either link, and the joint has the energy E of what they exceed natural angles n by:
+directors of either link. The energy E of the joint is that of their excess over natural angles n:
 
     u1 = g t . b',   u2 = -g t . a',     w1 = K (u1 - n1),   w2 = beta K (u2 - n2)
     E = [K (u1 - n1)^2 + beta K (u2 - n2)^2] / 2
 
-With V = w1 b' - w2 a' and s = V . t, and directors that follow the tangents without turning about
-them, the slopes of E by both tangents and by a turn of a', b' about t' are
+With V = w1 b' - w2 a' and s = V . t, and directors that follow the tangents without rotation about
+them, the derivatives of E by both tangents and by a rotation of a', b' about t' are
 
     dE/dt = g V + g' s t',   dE/dt' = g' s t - g c V,   e = -g (w1 t . a' + w2 t . b').
 
-The twist moment m of a link bears what the joints want to turn: m_j = m_{j-1} + e_j at joint j,
-and m = 0 in the last link. It twists its link by h m / C, half way up. Joints do not twist; they
-pass m on by forces that go with their holonomy: q t x t' / (1 + c) is added to both slopes, where q
-is the moment below the joint, m_{j-1}, and m_0 - e_0 at the clamp. It is -e_j / 2 and the mean of
-the moments of both links; where the moment is dropped (`transmitted` = 0), -e_j / 2 alone. So
+The twist moment m of a link balances the torques of the joints: m_j = m_{j-1} + e_j at joint j, and
+m = 0 in the last link. It twists its link by h m / C, at half its length. Joints do not twist; they
+transmit m by forces that follow from their holonomy: q t x t' / (1 + c) is added to both
+derivatives, where q is the moment below the joint, m_{j-1}, and m_0 - e_0 at the clamp. It is the
+sum of -e_j / 2 and the mean of the moments of both links; where the moment is dropped
+(`transmitted` = 0), it is -e_j / 2. So
 
     q_j = transmitted m - share e_j:    m = m_{j-1}, share = (1 - transmitted) / 2
                                         m = m_0, share = (1 + transmitted) / 2  at the clamp.
 
-The load of the last link opposes the tangent where it acts, which natural curvature turns from that
-of the link, the tangent at its middle: `tip` has its components on a, b and t.
+The load of the last link is opposite to the tangent at its point of action, which natural curvature
+rotates from the tangent at the middle of the link: `tip` has its components on a, b and t.
 
 The vector y has eight numbers a node, (x, y, z, T, a_x, a_y, a_z, m): tension and twist moment of
-the link that ends in the node, and the director above its joint. The tip has that of its link.
+the link that ends in the node, and the director above its joint. At the tip it is that of the last
+link.
+
 Source: discrete elastic rods, Bergou et al. (2008), for holonomy and twist; docs/theory/curved.md.
 """
 
@@ -47,13 +50,13 @@ from undula.numerics.integration.system import constraint_error, implements, rat
 _tangents, _along = tangents_kernel(DirectedRod), along_kernel(DirectedRod)
 _along_links = rates_kernel(DirectedRod)
 
-# A joint is ten numbers: t, t', a director (the one below or the one above), and a twist moment.
+# Numbers of a joint: t, t', the director below or above, and a twist moment.
 JOINT = 10
 
 
 @kernel
 def joint_at(y: Any, t: Any, j: Any, x: Any) -> None:
-    """Write the joint at the foot of link j to x (10,), with the director below it."""
+    """Write the joint below link j to x (10,), with the director below it."""
     for k in range(3):
         x[k] = t[j - 1, k] if j > 0 else (1.0 if k == 2 else 0.0)
         x[3 + k] = t[j, k]
@@ -75,21 +78,21 @@ def of_cosine(c: Any) -> Any:
 
 @kernel
 def twist_of(system: Any, x: Any, j: Any) -> Any:
-    """Return cosine and sine of the twist of the link below joint j; the clamp has no such link."""
+    """Return cosine and sine of the twist of the link below joint j, 1 and 0 at the clamp."""
     twist = system.compliance * system.link * x[9] if j > 0 else 0.0
     return math.cos(twist), math.sin(twist)
 
 
 @kernel
-def transport(x: Any, inverse: Any, twist: Any, moved: Any) -> None:
-    """Write the director above a joint to moved (3,), with 1 / (1 + c) and `twist_of` it."""
+def transport(x: Any, inverse: Any, twist: Any, transported: Any) -> None:
+    """Write the director above a joint to transported (3,), from 1 / (1 + c) and `twist_of`."""
     cosine, sine = twist
-    moved[0] = cosine * x[6] + sine * (x[1] * x[8] - x[2] * x[7])
-    moved[1] = cosine * x[7] + sine * (x[2] * x[6] - x[0] * x[8])
-    moved[2] = cosine * x[8] + sine * (x[0] * x[7] - x[1] * x[6])
-    lever = (x[3] * moved[0] + x[4] * moved[1] + x[5] * moved[2]) * inverse
+    transported[0] = cosine * x[6] + sine * (x[1] * x[8] - x[2] * x[7])
+    transported[1] = cosine * x[7] + sine * (x[2] * x[6] - x[0] * x[8])
+    transported[2] = cosine * x[8] + sine * (x[0] * x[7] - x[1] * x[6])
+    lever = (x[3] * transported[0] + x[4] * transported[1] + x[5] * transported[2]) * inverse
     for k in range(3):
-        moved[k] -= lever * (x[k] + x[3 + k])
+        transported[k] -= lever * (x[k] + x[3 + k])
 
 
 @kernel
@@ -105,7 +108,7 @@ def bends(system: Any, x: Any, g: Any, j: Any) -> Any:
 
 @kernel
 def joint_slopes(system: Any, x: Any, of_c: Any, j: Any, out: Any) -> None:
-    """Write the slopes by t and t', holonomy included, and e to out (7,), with `of_cosine`."""
+    """Write the derivatives by t and t', holonomy included, and e to out (7,)."""
     g, slope, inverse = of_c
     along, across, first, second = bends(system, x, g, j)
     turning = -g * (first * along + second * across)
@@ -124,22 +127,22 @@ def joint_slopes(system: Any, x: Any, of_c: Any, j: Any, out: Any) -> None:
 
 
 @kernel
-def director_above(y: Any, moved: Any, j: Any, x: Any) -> None:
-    """Put the director above joint j into x: that of y, at the clamp the one carried there."""
+def director_above(y: Any, transported: Any, j: Any, x: Any) -> None:
+    """Write the director above joint j to x: that of y, at the clamp the transported director."""
     for k in range(3):
-        x[6 + k] = y[8 * (j - 1) + 4 + k] if j > 0 else moved[k]
+        x[6 + k] = y[8 * (j - 1) + 4 + k] if j > 0 else transported[k]
 
 
 @kernel
 def first_director(j: Any, first: Any, x: Any) -> None:
-    """Put the director of the first link, which y does not hold, below joint 1."""
+    """Write the director of the first link, which is not in y, below joint 1."""
     if j == 1:
         overwrite(x[6:9], first)
 
 
 @kernel
 def last_direction(system: Any, y: Any, t: Any, out: Any) -> None:
-    """Write the direction that the last link's load opposes to out (3,)."""
+    """Write the direction opposite to the last link's load to out (3,)."""
     n = t.shape[0]
     for k in range(3):
         p, q = (k + 1) % 3, (k + 2) % 3
@@ -149,8 +152,8 @@ def last_direction(system: Any, y: Any, t: Any, out: Any) -> None:
 
 
 @implements(rates, DirectedRod)
-def framed_rates(system: Any, y: Any, v: Any, out: Any) -> None:
-    """Write the rate of turning, the active power and the dissipation at velocity v to out (3,)."""
+def directed_rates(system: Any, y: Any, v: Any, out: Any) -> None:
+    """Write the rate of rotation, the active power and the dissipation at velocity v to out."""
     n = system.joint.shape[0]
     t, length, last = np.empty((n, 3)), np.empty(n), np.empty(3)
     _along_links(system, y, v, out)
@@ -163,62 +166,62 @@ def framed_rates(system: Any, y: Any, v: Any, out: Any) -> None:
 
 
 @implements(residual, DirectedRod)
-def framed_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
+def directed_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
     """Write R(x) w - c f(x, z) and the constraints to out (n,)."""
     n = system.joint.shape[0]
     t, length, slopes = np.empty((n, 3)), np.empty(n), np.zeros((n, 3))
-    x, moved, first, found = np.empty(JOINT), np.empty(3), np.empty(3), np.empty(7)
+    x, transported, first, slope_values = np.empty(JOINT), np.empty(3), np.empty(3), np.empty(7)
     _tangents(system, y, t, length)
     for j in range(n):
         joint_at(y, t, j, x)
         first_director(j, first, x)
         of_c = of_cosine(joint_cosine(x))
-        transport(x, of_c[2], twist_of(system, x, j), moved)
-        director_above(y, moved, j, x)
-        joint_slopes(system, x, of_c, j, found)
+        transport(x, of_c[2], twist_of(system, x, j), transported)
+        director_above(y, transported, j, x)
+        joint_slopes(system, x, of_c, j, slope_values)
         for k in range(3):
-            slopes[j, k] += found[3 + k]
+            slopes[j, k] += slope_values[3 + k]
             if j > 0:
-                slopes[j - 1, k] += found[k]
-                out[8 * (j - 1) + 4 + k] = x[6 + k] - moved[k]
+                slopes[j - 1, k] += slope_values[k]
+                out[8 * (j - 1) + 4 + k] = x[6 + k] - transported[k]
             else:
-                first[k] = moved[k]
+                first[k] = transported[k]
         if j > 0:
-            out[8 * (j - 1) + 7] = y[8 * j + 7] - found[6] - y[8 * (j - 1) + 7]
+            out[8 * (j - 1) + 7] = y[8 * j + 7] - slope_values[6] - y[8 * (j - 1) + 7]
     for k in range(3):
         out[8 * n - 4 + k] = y[8 * n - 4 + k] - y[8 * n - 12 + k]
     out[8 * n - 1] = -y[8 * n - 1]
-    last_direction(system, y, t, found)
+    last_direction(system, y, t, slope_values)
     for i in range(n):
-        lagging, square = system.anisotropy * _along(t, w, i), 0.0
+        reduction, square = system.anisotropy * _along(t, w, i), 0.0
         for k in range(3):
             force = -slopes[i, k] / system.link - y[8 * i + 3] * t[i, k]
-            push = t[i, k] if i + 1 < n else found[k]
+            push = t[i, k] if i + 1 < n else slope_values[k]
             if i > 0:
                 out[8 * (i - 1) + k] += c * (force + system.inner_force[i] * push)
             direction = t[i, k] + (t[i + 1, k] if i + 1 < n else 0.0)
-            drag = system.weight[i] * (w[8 * i + k] - lagging * direction)
+            drag = system.weight[i] * (w[8 * i + k] - reduction * direction)
             out[8 * i + k] = drag - c * (force - system.outer_force[i] * push)
             square += t[i, k] * t[i, k]
         out[8 * i + 3] = 0.5 * (square - 1.0)
 
 
 @implements(constraint_error, DirectedRod)
-def framed_constraint_error(system: Any, y: Any) -> Any:
+def directed_constraint_error(system: Any, y: Any) -> Any:
     """Return the largest violation of the lengths and of the transport of directors at y (n,)."""
     n, largest = system.joint.shape[0], 0.0
     t, length = np.empty((n, 3)), np.empty(n)
-    x, moved, first = np.empty(JOINT), np.empty(3), np.empty(3)
+    x, transported, first = np.empty(JOINT), np.empty(3), np.empty(3)
     _tangents(system, y, t, length)
     for j in range(n):
         joint_at(y, t, j, x)
         first_director(j, first, x)
-        transport(x, 1.0 / (1.0 + joint_cosine(x)), twist_of(system, x, j), moved)
+        transport(x, 1.0 / (1.0 + joint_cosine(x)), twist_of(system, x, j), transported)
         square = t[j, 0] * t[j, 0] + t[j, 1] * t[j, 1] + t[j, 2] * t[j, 2]
         largest = max(largest, abs(0.5 * (square - 1.0)))
         for k in range(3):
             if j == 0:
-                first[k] = moved[k]
+                first[k] = transported[k]
             else:
-                largest = max(largest, abs(y[8 * (j - 1) + 4 + k] - moved[k]))
+                largest = max(largest, abs(y[8 * (j - 1) + 4 + k] - transported[k]))
     return largest

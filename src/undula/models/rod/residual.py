@@ -1,4 +1,4 @@
-"""Compiled equations of the linked rod: residual, drag, rates, rotation, norm."""
+"""Compiled equations of the linked rod: residual, drag, rates, rotation, error norm."""
 
 import math
 from collections.abc import Callable
@@ -9,17 +9,17 @@ import numpy as np
 
 from undula.jit.compilation import kernel
 from undula.models.rod.joint import stiffening
-from undula.models.rod.tables import OTHER_JOINTS, RODS, DirectedRod
+from undula.models.rod.tables import RODS, RODS_WITH_OWN_JOINTS, DirectedRod
 from undula.models.rod.vectors import vectors
 from undula.numerics.integration.system import (
     apply_drag,
     constraint_error,
+    error_norm,
     generator,
     implements,
     rates,
     residual,
     rotate,
-    size,
 )
 
 
@@ -54,9 +54,10 @@ def tangents_kernel(rod: Any) -> Callable[..., Any]:
 def cosine_kernel(dimension: int) -> Callable[..., Any]:
     """Return `cosine(t, i)`: t_{i-1} . t_i, with the clamp's e_z before the first link.
 
-    Taken from the chord, 1 - |t_i - t_{i-1}|^2 / 2, which is the same for unit vectors. Those that
-    Newton's method has not brought to unit length yet then change it by the square of the joint's
-    angle only, so that the matrix without the slope of g is good from its first correction on.
+    It is computed from the chord, as 1 - |t_i - t_{i-1}|^2 / 2, which is the same for unit vectors.
+    During Newton's iteration tangents are not of unit length; their error then changes the cosine
+    by the square of the joint's angle only, so that the matrix without the slope of g is accurate
+    from the first correction on.
     """
     d = dimension
 
@@ -73,7 +74,7 @@ def cosine_kernel(dimension: int) -> Callable[..., Any]:
 
 @cache
 def link_kernel(rod: Any) -> Callable[..., Any]:
-    """Return `link(system, e)`: tangent and length of a link with ends e apart."""
+    """Return `link(system, e)`: tangent and length of a link with the vector e along it."""
     times, dot, extensible = (
         vectors(rod.dimension).times,
         vectors(rod.dimension).dot,
@@ -92,9 +93,9 @@ def link_kernel(rod: Any) -> Callable[..., Any]:
 
 @cache
 def moment_kernel(dimension: int) -> Callable[..., Any]:
-    """Return `moment(system, t, u, i)`: a and K g (1 - c) of the joint from t to u before link i.
+    """Return `moment(system, t, u, i)`: a and K g (1 - c) of the joint from t to u below link i.
 
-    c is `cosine_kernel`'s, from the chord.
+    c is computed from the chord, as in `cosine_kernel`.
     """
     v = vectors(dimension)
     minus, times, dot = v.minus, v.times, v.dot
@@ -113,7 +114,7 @@ def moment_kernel(dimension: int) -> Callable[..., Any]:
 def along_kernel(rod: Any) -> Callable[..., Any]:
     """Return `along(t, u, i)`: s . u / |s|^2 at node i, so that m m . u = s (s . u) / |s|^2.
 
-    s = t_i + t_{i+1} has the direction m of the drag, at the last node s = t_i.
+    s = t_i + t_{i+1} has the direction m of the drag; at the last node s = t_i.
     """
     d, m = rod.dimension, rod.stride
 
@@ -131,7 +132,7 @@ def along_kernel(rod: Any) -> Callable[..., Any]:
 
 @cache
 def mean_tangent_kernel(dimension: int) -> Callable[..., Any]:
-    """Return `mean_tangent(t, i, out)`: the drag's direction at node i, gives 1/|t_i + t_{i+1}|."""
+    """Return `mean_tangent(t, i, out)`: write the drag's direction m, return 1/|t_i + t_{i+1}|."""
     d = dimension
 
     @kernel
@@ -154,16 +155,16 @@ def rates_kernel(rod: Any) -> Any:
     """Return `rates(system, y, v, out)` of `undula.numerics.integration.system` for line loads."""
     d, m = rod.dimension, rod.stride
     read, _, plus, minus, _, dot, _ = vectors(d)
-    link, nothing = link_kernel(rod), (0.0,) * d
+    link, zero = link_kernel(rod), (0.0,) * d
 
     @kernel
     def rod_rates(system: Any, y: Any, v: Any, out: Any) -> None:
         n = system.joint.shape[0]
-        node, before = read(y, 0), nothing
+        node, before = read(y, 0), zero
         t, _ = link(system, node)
         spin = inertia = power = dissipation = 0.0
         for i in range(n):
-            k, moved = m * i, read(v, m * i)
+            k, velocity = m * i, read(v, m * i)
             outer, u, s = node, t, t
             if i + 1 < n:
                 outer = read(y, k + m)
@@ -172,11 +173,13 @@ def rates_kernel(rod: Any) -> Any:
             if d == 3:
                 spin += y[k] * v[k + 1] - y[k + 1] * v[k]
                 inertia += y[k] * y[k] + y[k + 1] * y[k + 1]
-            along = dot(s, moved)
-            slower = system.anisotropy * along * along / dot(s, s)
-            dissipation += system.weight[i] * (dot(moved, moved) - slower)
-            power -= system.outer_force[i] * dot(t, moved) + system.inner_force[i] * dot(t, before)
-            node, t, before = outer, u, moved
+            along = dot(s, velocity)
+            along_reduction = system.anisotropy * along * along / dot(s, s)
+            dissipation += system.weight[i] * (dot(velocity, velocity) - along_reduction)
+            power -= system.outer_force[i] * dot(t, velocity) + system.inner_force[i] * dot(
+                t, before
+            )
+            node, t, before = outer, u, velocity
         out[0] = spin / inertia if inertia > 0.0 else 0.0
         out[1] = power
         out[2] = dissipation
@@ -187,7 +190,7 @@ def rates_kernel(rod: Any) -> Any:
 def _register_forces(rod: Any) -> None:
     d, m, extensible = rod.dimension, rod.stride, rod.extensible
     read, write, plus, minus, times, dot, axis = vectors(d)
-    link, moment, nothing = link_kernel(rod), moment_kernel(d), (0.0,) * d
+    link, moment, zero = link_kernel(rod), moment_kernel(d), (0.0,) * d
 
     @implements(residual, rod)
     def rod_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
@@ -195,11 +198,11 @@ def _register_forces(rod: Any) -> None:
         node = read(y, 0)
         t, length = link(system, node)
         a, shortfall = moment(system, axis, t, 0)
-        row = nothing  # what node i - 1 has but for the force of the link to node i
+        row = zero  # residual of node i - 1 without the force of the link to node i
         for i in range(n):
             k, last = m * i, i + 1 == n
             outer, u, outer_length, s = node, t, length, t
-            b, outer_shortfall = nothing, 0.0
+            b, outer_shortfall = zero, 0.0
             if not last:
                 outer = read(y, k + m)
                 u, outer_length = link(system, minus(outer, node))
@@ -209,9 +212,9 @@ def _register_forces(rod: Any) -> None:
             force = minus(times(1.0 / length, minus(b, a)), times(multiplier, t))
             if i > 0:
                 write(out, k - m, plus(row, times(c, plus(force, times(system.inner_force[i], t)))))
-            moved = read(w, k)
-            lagging = times(system.anisotropy * dot(s, moved) / dot(s, s), s)
-            drag = times(system.weight[i], minus(moved, lagging))
+            velocity = read(w, k)
+            reduction = times(system.anisotropy * dot(s, velocity) / dot(s, s), s)
+            drag = times(system.weight[i], minus(velocity, reduction))
             row = minus(drag, times(c, minus(force, times(system.outer_force[i], t))))
             if extensible:
                 tension = multiplier + (shortfall + outer_shortfall) / length
@@ -240,23 +243,23 @@ def _register_motion(rod: Any) -> None:
     tangents, along = tangents_kernel(rod), along_kernel(rod)
 
     @implements(apply_drag, rod)
-    def rod_weigh(system: Any, y: Any, u: Any, out: Any) -> None:
+    def rod_apply_drag(system: Any, y: Any, u: Any, out: Any) -> None:
         n = system.joint.shape[0]
         t, length = np.empty((n, d)), np.empty(n)
         tangents(system, y, t, length)
         for i in range(n):
-            lagging = system.anisotropy * along(t, u, i)
+            reduction = system.anisotropy * along(t, u, i)
             for a in range(d):
                 direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
-                out[m * i + a] = system.weight[i] * (u[m * i + a] - lagging * direction)
+                out[m * i + a] = system.weight[i] * (u[m * i + a] - reduction * direction)
             for k in range(m * i + d, m * i + m):
                 out[k] = 0.0
 
     if rod is not DirectedRod:
         implements(rates, rod)(rates_kernel(rod))
 
-    @implements(size, rod)
-    def rod_size(system: Any, vector: Any, mask: Any) -> Any:
+    @implements(error_norm, rod)
+    def rod_error_norm(system: Any, vector: Any, mask: Any) -> Any:
         total = 0.0
         for a in range(d):
             total += vector[a] * vector[a]
@@ -289,5 +292,5 @@ def _register_motion(rod: Any) -> None:
 
 for _rod in RODS:
     _register_motion(_rod)
-    if _rod not in OTHER_JOINTS:
+    if _rod not in RODS_WITH_OWN_JOINTS:
         _register_forces(_rod)

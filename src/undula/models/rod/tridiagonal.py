@@ -1,4 +1,4 @@
-"""Systems of equations each of which knows its two neighbours alone."""
+"""Tridiagonal linear systems."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from undula.jit.compilation import kernel
 
 @kernel
 def solve_tridiagonal(lower: Any, diagonal: Any, upper: Any, x: Any) -> None:
-    """Overwrite the right-hand side x by the solution; the matrix is overwritten too."""
+    """Overwrite x (n,) by the solution, without pivoting; the matrix is overwritten too."""
     n = x.shape[0]
     for i in range(1, n):
         factor = lower[i] / diagonal[i - 1]

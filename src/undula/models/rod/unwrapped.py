@@ -1,21 +1,21 @@
-"""Joints that wind up: rigid links in a plane whose angles are followed beyond pi.
+"""Rigid links in a plane with unwrapped joint angles, which are continuous beyond pi.
 
-In a plane the angle psi from one link to the next has a sign and is known up to full turns; a
-motion, which is continuous, fixes these as well. The energy K psi^2 / 2 of a joint then has no
-kink: where the joint of `undula.models.rod.joint` would fold over, this one goes on winding up.
-With M_j the moment at the foot of link j and n_j its normal, the force along link j is
+In a plane the angle psi from one link to the next has a sign and is defined up to full turns, which
+the continuity of a motion determines. The energy K psi^2 / 2 of a joint then has no kink: where the
+joint of `undula.models.rod.joint` folds over, the moment of this joint keeps growing. With M_j the
+moment of the joint below link j and n_j its normal, the force along link j is
 
     q_j = (M_{j+1} - M_j) n_j / h - T_j t_j,    M_j = K_j psi_j,    n = (t_z, -t_x)    in (x, z)
 
-and the rest as in `undula.models.rod.tables`: moments act as couples, so that T_j is the multiplier
-of the length alone and nothing is singular. psi_j is positive where link j leans more towards x
-than the one before it, and is an unknown of its own, (x_i, z_i, T_i, psi_i) node by node, with the
-equation
+and the rest is as in `undula.models.rod.tables`. Moments act as couples, so that T_j is the
+multiplier of the length alone and the equations have no singularity. psi_j is positive where link j
+is inclined more towards x than the link before it. It is an unknown, (x_i, z_i, T_i, psi_i) node by
+node, with the equation
 
     psi_j - angle from t_{j-1} to t_j = 0,
 
-whose left side is taken between -pi and pi: it does not count full turns. A step takes them from
-the states before it, a state without them (psi = 0) has the principal angles.
+whose left side is taken between -pi and pi, and does not count full turns. A step continues them
+from the states before it. For a state without them (psi = 0) the principal angles are taken.
 """
 
 import math
@@ -33,7 +33,7 @@ _tangents, _along = tangents_kernel(UnwrappedRod), along_kernel(UnwrappedRod)
 
 @kernel
 def angle_excess(y: Any, t: Any, i: Any) -> Any:
-    """Return by how much psi at the foot of link i differs from the links' angle, up to turns."""
+    """Return psi below link i less the angle between the links, in (-pi, pi]."""
     x, z = (t[i - 1, 0], t[i - 1, 1]) if i > 0 else (0.0, 1.0)
     cosine, sine = x * t[i, 0] + z * t[i, 1], z * t[i, 0] - x * t[i, 1]
     c, s = math.cos(y[4 * i + 3]), math.sin(y[4 * i + 3])
@@ -42,7 +42,7 @@ def angle_excess(y: Any, t: Any, i: Any) -> Any:
 
 @kernel
 def moment_step(system: Any, y: Any, i: Any) -> Any:
-    """Return M_{i+1} - M_i over the length of link i."""
+    """Return (M_{i+1} - M_i) / h for link i."""
     step = -system.joint[i] * y[4 * i + 3]
     if i + 1 < system.joint.shape[0]:
         step += system.joint[i + 1] * y[4 * i + 7]
@@ -50,8 +50,8 @@ def moment_step(system: Any, y: Any, i: Any) -> Any:
 
 
 @kernel
-def follow_angles(system: Any, y: Any) -> None:
-    """Overwrite each psi in y (n,) by the angle of the links that is nearest to it."""
+def update_angles(system: Any, y: Any) -> None:
+    """Overwrite each psi in y (n,) by the nearest angle that is consistent with the links."""
     n = system.joint.shape[0]
     t, length = np.empty((n, 2)), np.empty(n)
     _tangents(system, y, t, length)
@@ -60,8 +60,8 @@ def follow_angles(system: Any, y: Any) -> None:
 
 
 @kernel
-def winding_energy(system: Any, y: Any) -> Any:
-    """Return the energies of bending and of stretching at y (n,), with the full turns in it."""
+def unwrapped_energy(system: Any, y: Any) -> Any:
+    """Return the energies of bending and of stretching at y (n,), full turns included."""
     n, bending = system.joint.shape[0], 0.0
     t, length = np.empty((n, 2)), np.empty(n)
     _tangents(system, y, t, length)
@@ -72,13 +72,13 @@ def winding_energy(system: Any, y: Any) -> Any:
 
 
 @implements(residual, UnwrappedRod)
-def winding_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
+def unwrapped_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
     """Write R(x) w - c f(x, z) and the constraints to out (n,)."""
     n = system.joint.shape[0]
     t, length = np.empty((n, 2)), np.empty(n)
     _tangents(system, y, t, length)
     for i in range(n):
-        couple, lagging = moment_step(system, y, i), system.anisotropy * _along(t, w, i)
+        couple, reduction = moment_step(system, y, i), system.anisotropy * _along(t, w, i)
         square = 0.0
         for a in range(2):
             normal = t[i, 1] if a == 0 else -t[i, 0]
@@ -86,7 +86,7 @@ def winding_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
             if i > 0:
                 out[4 * (i - 1) + a] += c * (force + system.inner_force[i] * t[i, a])
             direction = t[i, a] + (t[i + 1, a] if i + 1 < n else 0.0)
-            drag = system.weight[i] * (w[4 * i + a] - lagging * direction)
+            drag = system.weight[i] * (w[4 * i + a] - reduction * direction)
             out[4 * i + a] = drag - c * (force - system.outer_force[i] * t[i, a])
             square += t[i, a] * t[i, a]
         out[4 * i + 2] = 0.5 * (square - 1.0)
@@ -94,7 +94,7 @@ def winding_residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> None:
 
 
 @implements(constraint_error, UnwrappedRod)
-def winding_constraint_error(system: Any, y: Any) -> Any:
+def unwrapped_constraint_error(system: Any, y: Any) -> Any:
     """Return the largest violation of the constraints at y (n,)."""
     n, largest = system.joint.shape[0], 0.0
     t, length = np.empty((n, 2)), np.empty(n)

@@ -1,4 +1,4 @@
-"""The exact derivative of the residual of links that wind (see `undula.models.rod.unwrapped`).
+"""The exact derivative of the residual of unwrapped links (see `undula.models.rod.unwrapped`).
 
 The force along a link depends on its own direction and on the angles at its ends,
 
@@ -36,7 +36,7 @@ _at_fixed_angles = derivative_kernel(UnwrappedRod, _link_blocks)
 
 
 @kernel
-def winding_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
+def unwrapped_derivative(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> None:
     """Write the derivative of the residual to band (n, 2 b + 1)."""
     n = system.joint.shape[0]
     t, length = np.empty((n, 2)), np.empty(n)

@@ -1,7 +1,7 @@
-"""Vectors of two or three numbers in compiled code: tuples, which live in registers.
+"""Vectors of two or three numbers in compiled code, as tuples, which stay in registers.
 
-A kernel that goes along the links keeps what it needs of the last one in such vectors. Small arrays
-would have to be allocated at every call, which takes as long as all the arithmetic of a few links.
+A kernel that loops over the links keeps quantities of the last link in such vectors. Small arrays
+would be allocated at every call, which takes as long as the arithmetic of a few links.
 """
 
 from collections.abc import Callable
@@ -12,17 +12,20 @@ from undula.jit.compilation import kernel
 
 
 class Vectors(NamedTuple):
-    """Arithmetic in so many dimensions.
+    """Vector arithmetic in two or three dimensions.
 
     Attributes
     ----------
     read : read(x, k)
-        The vector that begins at x[k].
+        Return the vector that begins at x[k].
     write : write(x, k, u)
         Write a vector to x from x[k] on.
     plus, minus : plus(u, v)
+        Return sum or difference.
     times : times(a, u)
+        Return the product with a number.
     dot : dot(u, v)
+        Return the scalar product.
     axis : tuple of float
         The direction of the clamp, e_z.
     """
@@ -38,7 +41,7 @@ class Vectors(NamedTuple):
 
 @cache
 def vectors(dimension: int) -> Vectors:
-    """Return the arithmetic of vectors in a plane or in space."""
+    """Return the arithmetic of vectors in a plane (2) or in space (3)."""
     return {2: _in_a_plane, 3: _in_space}[dimension]()
 
 

@@ -4,7 +4,7 @@ Rigid links: the multipliers follow from t_i . (v_i - v_{i-1}) = 0, a tridiagona
 
     v_i = M_i (f_i - T_i t_i + T_{i+1} t_{i+1}),    M_i = [I + (gamma - 1) m m] / w_i.
 
-Extensible links: each follows from the stretch of its link.
+Extensible links: the multiplier follows from the stretch of its link.
 """
 
 from typing import Any
@@ -14,17 +14,17 @@ import numpy as np
 from undula.jit.compilation import entry, kernel, overwrite
 from undula.models.rod.joint import joint_energy, stiffening
 from undula.models.rod.residual import cosine_kernel, mean_tangent_kernel, tangents_kernel
-from undula.models.rod.sizes import belongs
-from undula.models.rod.tables import OTHER_JOINTS, RODS, DirectedRod, UnwrappedRod
+from undula.models.rod.sizes import sizes_match
+from undula.models.rod.tables import RODS, RODS_WITH_OWN_JOINTS, DirectedRod, UnwrappedRod
 from undula.models.rod.tridiagonal import solve_tridiagonal
-from undula.models.rod.twist import find_frames, framed_energy
-from undula.models.rod.unwrapped import follow_angles, winding_energy
+from undula.models.rod.twist import directed_energy, find_directors
+from undula.models.rod.unwrapped import unwrapped_energy, update_angles
 from undula.numerics.integration.system import RATES, generic, implements, rates, residual
 
 
 @generic
 def find_multipliers(system: Any, y: Any) -> Any:
-    """Overwrite the multipliers in y (n,) by those that belong to its positions."""
+    """Overwrite the multipliers in y (n,) by those of its positions."""
 
 
 @generic
@@ -106,21 +106,21 @@ def _register(rod: Any) -> None:
             y[m * i + d] = tension - shortfall / length[i]
 
     @kernel
-    def winding_multipliers(system: Any, y: Any) -> None:
-        follow_angles(system, y)
+    def unwrapped_multipliers(system: Any, y: Any) -> None:
+        update_angles(system, y)
         rigid_multipliers(system, y)
 
     @kernel
-    def framed_multipliers(system: Any, y: Any) -> None:
-        find_frames(system, y)
+    def directed_multipliers(system: Any, y: Any) -> None:
+        find_directors(system, y)
         rigid_multipliers(system, y)
 
     rod_velocity_compiled = kernel(rod_velocity)
     compiled = extensible_multipliers if extensible else rigid_multipliers
     if rod is UnwrappedRod:
-        compiled = winding_multipliers
+        compiled = unwrapped_multipliers
     if rod is DirectedRod:
-        compiled = framed_multipliers
+        compiled = directed_multipliers
 
     @implements(find_multipliers, rod)
     def rod_multipliers(system: Any, y: Any) -> None:
@@ -151,15 +151,25 @@ def _register_energy(rod: Any) -> None:
 
 for _rod in RODS:
     _register(_rod)
-    if _rod not in OTHER_JOINTS:
+    if _rod not in RODS_WITH_OWN_JOINTS:
         _register_energy(_rod)
-implements(elastic_energy, UnwrappedRod)(winding_energy)
-implements(elastic_energy, DirectedRod)(framed_energy)
+implements(elastic_energy, UnwrappedRod)(unwrapped_energy)
+implements(elastic_energy, DirectedRod)(directed_energy)
 
 
-@entry(f"y (n), v (n + {RATES})", where=lambda system, n: belongs(system, n))
+@entry(f"y (n), v (n + {RATES})", where=lambda system, n: sizes_match(system, n))
 def rate_of_change(system: Any, y: Any, v: Any) -> None:
-    """Find the multipliers (written to y) and all rates (to v, n + RATES) at the positions in y."""
+    """Compute the multipliers at the positions in y, in place, and all rates.
+
+    Parameters
+    ----------
+    system : Rod
+        The tables.
+    y : ndarray, shape (n,)
+        Positions; receives the multipliers.
+    v : ndarray, shape (n + RATES,)
+        Receives the velocity and the rates of the integrals.
+    """
     n = y.shape[0]
     find_multipliers(system, y)
     find_velocity(system, y, v[:n])
@@ -168,20 +178,27 @@ def rate_of_change(system: Any, y: Any, v: Any) -> None:
 
 @entry(
     "states (m, n), out (m, q)",
-    where=lambda system, n, q: belongs(system, n) and (q == 2 or q == 4),
+    where=lambda system, n, q: sizes_match(system, n) and (q == 2 or q == 4),
 )
 def observe(system: Any, states: Any, out: Any) -> None:
-    """Write energy of bending and of stretching, active power and dissipation to out (m, 4).
+    """Compute energies and powers of several states.
 
-    Energies alone, which take no solving for velocities, to out (m, 2). `states` (m, n) holds
-    positions and multipliers; the multipliers are found anew.
+    Parameters
+    ----------
+    system : Rod
+        The tables.
+    states : ndarray, shape (m, n)
+        Positions and multipliers; the multipliers are recomputed.
+    out : ndarray, shape (m, 4) or (m, 2)
+        Receives the energies of bending and of stretching, the active power and the dissipation;
+        with two columns the energies only, which takes no solution for velocities.
     """
-    y, v, found = np.empty(states.shape[1]), np.empty(states.shape[1]), np.empty(3)
+    y, v, rates_found = np.empty(states.shape[1]), np.empty(states.shape[1]), np.empty(3)
     for k in range(states.shape[0]):
         overwrite(y, states[k])
         out[k, 0], out[k, 1] = elastic_energy(system, y)
         if out.shape[1] > 2:
             find_multipliers(system, y)
             find_velocity(system, y, v)
-            rates(system, y, v, found)
-            out[k, 2], out[k, 3] = found[1], found[2]
+            rates(system, y, v, rates_found)
+            out[k, 2], out[k, 3] = rates_found[1], rates_found[2]

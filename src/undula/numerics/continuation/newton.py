@@ -1,8 +1,8 @@
-"""Newton's method for a problem r(u; p) = 0 at a fixed parameter, damped where it has to be.
+"""Damped Newton's method for a problem r(u; p) = 0 at a fixed parameter.
 
-Steps are measured in the problem's own norm, in which a change of 1 is large: longer ones are cut
-to it. A step that makes the residual grow is halved until it does not; steps in the region of
-quadratic convergence are left alone, as the residual may be nothing but round-off there.
+Steps are measured in the problem's own norm, in which a change of 1 is large; longer steps are
+shortened to 1. A step that increases the residual is halved until it does not. Steps in the region
+of quadratic convergence are not damped, as the residual may be round-off there.
 """
 
 import math
@@ -14,14 +14,14 @@ import numpy as np
 from undula.arrays import Array
 from undula.numerics.continuation.problem import Evaluation, Problem
 
-_MOST_ITERATIONS, _MOST_HALVINGS = 30, 6
-# After a step of this size quadratic convergence leaves round-off; a step of this size is part of
-# that convergence, whatever the residual says.
+_MAX_ITERATIONS, _MAX_HALVINGS = 30, 6
+# Norm of a step after which quadratic convergence leaves round-off, and norm of a step below which
+# convergence is quadratic, so that the residual is not compared.
 _SMALL_STEP, _LOCAL_STEP = 1e-9, 1e-4
 
 
 class Convergence(Enum):
-    """How Newton's method ended; the value says what to do."""
+    """Outcome of Newton's method; the value states the cure."""
 
     CONVERGED = "a solution was found"
     NOT_CONVERGED = "steps did not become small; begin nearer to a solution"
@@ -32,15 +32,16 @@ class Convergence(Enum):
 
 @dataclass(frozen=True)
 class Solution:
-    """What Newton's method found.
+    """Result of Newton's method.
 
     Attributes
     ----------
     outcome : Convergence
+        Whether it converged, or why not.
     u : ndarray of shape (m,)
-        The solution, or the last point reached.
+        The solution, or the last iterate.
     steps : tuple of float
-        Sizes of all steps in the problem's norm.
+        Norms of all steps.
     residual : float
         Euclidean norm of the residual at u.
     """
@@ -52,49 +53,60 @@ class Solution:
 
     @property
     def converged(self) -> bool:
-        """Whether it is a solution."""
+        """True for a solution."""
         return self.outcome is Convergence.CONVERGED
 
 
 def newton(problem: Problem, u: Array, p: float) -> Solution:
-    """Solve r(u; p) = 0 for u, from a guess (m,), at a fixed parameter.
+    """Solve r(u; p) = 0 for u at a fixed parameter.
 
-    A residual that is not finite means that the problem has no value there. Failure is an outcome,
-    not an exception.
+    Parameters
+    ----------
+    problem : Problem
+        A residual that is not finite means that the problem is undefined there.
+    u : ndarray of shape (m,)
+        The guess.
+    p : float
+        The parameter.
+
+    Returns
+    -------
+    Solution
+        Failure is an outcome, not an exception.
     """
-    at, steps = problem.evaluate(u, p), list[float]()
-    if not np.isfinite(at.residual).all():
-        return Solution(Convergence.NOT_FINITE, u, (), _norm(at))
-    for _ in range(_MOST_ITERATIONS):
-        step = _full_step(at)
+    evaluation, steps = problem.evaluate(u, p), list[float]()
+    if not np.isfinite(evaluation.residual).all():
+        return Solution(Convergence.NOT_FINITE, u, (), _norm(evaluation))
+    for _ in range(_MAX_ITERATIONS):
+        step = _full_step(evaluation)
         if step is None:
-            return Solution(Convergence.SINGULAR, u, tuple(steps), _norm(at))
-        size = math.sqrt(problem.weights @ step**2)
-        part = 1.0 / max(1.0, size)
-        for _ in range(_MOST_HALVINGS):
-            tried = problem.evaluate(u + part * step, p)
-            local = size <= _LOCAL_STEP and bool(np.isfinite(tried.residual).all())
-            if local or _norm(tried) <= _norm(at):
+            return Solution(Convergence.SINGULAR, u, tuple(steps), _norm(evaluation))
+        norm = math.sqrt(problem.weights @ step**2)
+        damping = 1.0 / max(1.0, norm)
+        for _ in range(_MAX_HALVINGS):
+            trial = problem.evaluate(u + damping * step, p)
+            local = norm <= _LOCAL_STEP and bool(np.isfinite(trial.residual).all())
+            if local or _norm(trial) <= _norm(evaluation):
                 break
-            part *= 0.5
+            damping *= 0.5
         else:
-            return Solution(Convergence.STALLED, u, tuple(steps), _norm(at))
-        u, at = u + part * step, tried
-        steps.append(part * size)
-        if part == 1.0 and size <= _SMALL_STEP:
-            return Solution(Convergence.CONVERGED, u, tuple(steps), _norm(at))
-    return Solution(Convergence.NOT_CONVERGED, u, tuple(steps), _norm(at))
+            return Solution(Convergence.STALLED, u, tuple(steps), _norm(evaluation))
+        u, evaluation = u + damping * step, trial
+        steps.append(damping * norm)
+        if damping == 1.0 and norm <= _SMALL_STEP:
+            return Solution(Convergence.CONVERGED, u, tuple(steps), _norm(evaluation))
+    return Solution(Convergence.NOT_CONVERGED, u, tuple(steps), _norm(evaluation))
 
 
-def _full_step(at: Evaluation) -> Array | None:
-    """Return the step to the zero of the linearised problem; None if there is no such."""
-    nothing = np.zeros(at.residual.size)
+def _full_step(evaluation: Evaluation) -> Array | None:
+    """Return the step to the zero of the linearised problem; None if that is singular."""
+    zeros = np.zeros(evaluation.residual.size)
     try:
-        step, _ = at.linear.solve(nothing, nothing, 1.0, -at.residual, 0.0)
+        step, _ = evaluation.linear.solve(zeros, zeros, 1.0, -evaluation.residual, 0.0)
     except np.linalg.LinAlgError:
         return None
     return step if np.isfinite(step).all() else None
 
 
-def _norm(at: Evaluation) -> float:
-    return math.sqrt(at.residual @ at.residual)
+def _norm(evaluation: Evaluation) -> float:
+    return math.sqrt(evaluation.residual @ evaluation.residual)

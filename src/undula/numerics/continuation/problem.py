@@ -1,12 +1,12 @@
-"""What Newton's method and continuation ask of a problem r(u; p) = 0, and of a flow.
+"""Protocols of a problem r(u; p) = 0, its linearisation, and a constrained differential equation.
 
-A problem gives its residual together with its linearisation, which solves systems bordered by one
-column and one row,
+They state all that Newton's method, continuation and periodic orbits use. A problem returns its
+residual together with its linearisation, which solves systems bordered by one column and one row,
 
     [ J      column ] [ x ]   [ right ]
     [ row'   corner ] [ y ] = [ last  ],
 
-stably even where J itself is singular, as it is at a fold.
+accurately even where J itself is singular, as at a fold.
 """
 
 from dataclasses import dataclass
@@ -33,6 +33,7 @@ class Evaluation:
     Attributes
     ----------
     residual : ndarray of shape (m,)
+        The value r(u; p).
     linear : Linear
         Its derivative by u.
     by_parameter : ndarray of shape (m,)
@@ -49,18 +50,18 @@ class Problem(Protocol):
 
     @property
     def weights(self) -> Array:
-        """Weights (m,) of a sum of squares that measures changes of u; about 1 for a large one."""
+        """Weights (m,) of the norm: a sum of squares that is about 1 for a large change of u."""
 
     def evaluate(self, u: Array, p: float) -> Evaluation:
         """Return residual and derivatives at (u, p)."""
 
-    def referred_to(self, u: Array) -> Self:
+    def with_reference(self, u: Array) -> Self:
         """Return the problem with the phases of its symmetries fixed by the solution u."""
 
 
 @dataclass(frozen=True)
 class DenseLinear:
-    """A linearisation that is a plain matrix (m, m)."""
+    """A linearisation as a dense matrix (m, m)."""
 
     matrix: Array
 
@@ -68,8 +69,8 @@ class DenseLinear:
         self, column: Array, row: Array, corner: float, right: Array, last: float
     ) -> tuple[Array, float]:
         """Return x (m,) and y of the bordered system."""
-        whole = np.block([[self.matrix, column[:, None]], [row[None, :], np.array([[corner]])]])
-        solution = np.linalg.solve(whole, np.append(right, last))
+        bordered = np.block([[self.matrix, column[:, None]], [row[None, :], np.array([[corner]])]])
+        solution = np.linalg.solve(bordered, np.append(right, last))
         return solution[:-1], float(solution[-1])
 
 
@@ -86,7 +87,7 @@ class Equations(Protocol):
 
     @property
     def differential(self) -> Any:
-        """True at positions, False at multipliers, shape (n,); the same for rows of equations."""
+        """True at positions, False at multipliers, shape (n,); the same for the equations."""
 
     def residual(self, y: Array, w: Array) -> Array:
         """Return R(x) w - f(x, z) and g(x, z), shape (n,), for velocities w (n,)."""
@@ -94,8 +95,8 @@ class Equations(Protocol):
     def parts(self, y: Array, w: Array, turn: float) -> tuple[Array, Array]:
         """Return bands (n, 2 b + 1) of d residual / dy and of R.
 
-        The first is taken at fixed w, plus `turn` R S for w that turns with the system; rows of R
-        that belong to constraints are 0. Layout: band[i, j - i + b] = matrix[i, j].
+        The first is taken at fixed w, plus `turn` R S for a w that rotates with the system. Rows of
+        R that belong to constraints are 0. Layout: band[i, j - i + b] = matrix[i, j].
         """
 
     def displacements(self, y: Array) -> Array:

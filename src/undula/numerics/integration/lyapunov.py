@@ -1,9 +1,9 @@
-"""How fast small changes of a trajectory grow, in the mean: its leading Lyapunov exponents.
+"""Leading Lyapunov exponents: mean rates at which small changes of a trajectory grow.
 
-Changes carried along with a trajectory (`undula.numerics.integration.variational`) all turn into
-the direction that grows most. They are made orthonormal again every few steps; the logarithms of
-what that takes out, added up over a time, are the growth of lengths, areas and volumes, and so of
-one exponent after the other.
+Changes propagated with a trajectory (`undula.numerics.integration.variational`) all align with the
+direction of fastest growth. They are orthonormalised every few steps. The logarithms of the factors
+that this removes, summed over time, are the growth of lengths, areas and volumes, which gives one
+exponent after the other.
 
 Source: Benettin, Galgani, Giorgilli & Strelcyn (1980), Meccanica 15, 9.
 """
@@ -16,22 +16,22 @@ from typing import Any
 import numpy as np
 
 from undula.arrays import Array
+from undula.numerics.integration.matrices import derivative_half_bandwidth
 from undula.numerics.integration.status import Status
 from undula.numerics.integration.step import Options
 from undula.numerics.integration.stepper_state import STEPS, TIME, StepperState
-from undula.numerics.integration.system import derivative_half_bandwidth
 from undula.numerics.integration.variational import advance_with_changes
 
-#: Blocks that a trajectory is cut into.
+#: Number of blocks of a trajectory.
 BLOCKS = 400
-#: The first part of them turns the changes into their directions and is not counted.
-TURNING_IN = 0.25
-#: Batches of blocks whose means give the statistical error.
+#: Share of the blocks that is left out at the beginning, while the changes align.
+TRANSIENT_SHARE = 0.25
+#: Number of batches of blocks, whose means give the statistical error.
 BATCHES = 10
-#: Changes are made orthonormal at least so often: in as many steps, each some per cent of the time
-#: in which anything happens, leading ones do not become parallel to all digits.
-MOST_STEPS = 50
-#: A step takes the logarithm of a change off by less than so many rtol: systems with known
+#: Largest number of steps between orthonormalisations. A step is a few per cent of the time scale
+#: of the motion, so that leading changes do not become parallel to all digits.
+STEPS_BETWEEN_ORTHONORMALISATIONS = 50
+#: Bound on the error of the logarithm of a change in one step, in units of rtol: systems with known
 #: exponents show four to nine (tests/numerics/test_exponents.py).
 STEP_ERROR_IN_RTOL = 10.0
 
@@ -43,13 +43,13 @@ class Block:
     Attributes
     ----------
     time : float
-        How long it was.
+        Duration.
     steps : int
-        Steps that it took.
+        Number of steps.
     logs : ndarray, shape (k,)
-        Logarithms of the factors by which k changes grew, each across those before it.
+        Logarithms of the factors by which k changes grew, each orthogonal to those before it.
     status : Status
-        DONE, or why it could not be followed to its end.
+        DONE, or the reason why the integration ended before the end of the block.
     """
 
     time: float
@@ -60,7 +60,7 @@ class Block:
 
 def growth(
     system: Any,
-    memory: StepperState,
+    stepper: StepperState,
     options: Options,
     *,
     count: int,
@@ -68,17 +68,17 @@ def growth(
     seed: int = 1,
     advance: Callable[..., int] = advance_with_changes,
 ) -> Iterator[Block]:
-    """Follow a trajectory with random small changes, block by block.
+    """Integrate a trajectory with random small changes, block by block.
 
     Parameters
     ----------
-    system, memory, options
-        As for `undula.numerics.integration.time_loop.advance`; the memory is changed in place. The
-        frame is the lab's throughout.
+    system, stepper, options
+        As for `undula.numerics.integration.time_loop.advance`; the stepper is changed in place. The
+        lab frame is used throughout.
     count : int
-        Number of changes, at most that of the directions in which the system can move.
+        Number of changes, at most the number of degrees of freedom.
     duration : float
-        Time to follow it.
+        Duration of the trajectory, above 0.
     seed : int
         Seed of the changes.
     advance : callable
@@ -87,59 +87,74 @@ def growth(
     Yields
     ------
     Block
-        `BLOCKS` of them; one that could not be followed to its end is the last.
+        `BLOCKS` blocks; a block whose integration failed is the last.
     """
-    longest = min(options.longest_step, duration / BLOCKS)  # so that no block is empty
-    moving, options = options.mask == 1.0, options._replace(frame=0, longest_step=longest)
-    changes = np.zeros((count, *memory.differences[:, : moving.size].shape))
+    longest_step = min(options.longest_step, duration / BLOCKS)  # so that no block is empty
+    moving, options = options.mask == 1.0, options._replace(frame=0, longest_step=longest_step)
+    changes = np.zeros((count, *stepper.differences[:, : moving.size].shape))
     random = np.random.default_rng(seed)
     changes[:, 0, moving] = random.normal(size=(count, int(moving.sum())))
     half = derivative_half_bandwidth(type(system))
     band = np.zeros((moving.size, 2 * half + 1))
-    start = float(memory.real[TIME])
+    start = float(stepper.real[TIME])
     for block in range(1, BLOCKS + 1):
         end, logs, status = start + duration * block / BLOCKS, np.zeros(count), Status.PAUSED
-        time, steps = float(memory.real[TIME]), int(memory.count[STEPS])
+        time, steps = float(stepper.real[TIME]), int(stepper.count[STEPS])
         while status is Status.PAUSED:
-            status = Status(advance(system, memory, options, changes, band, end, MOST_STEPS))
-            logs += _made_orthonormal(changes, moving)
-        yield Block(memory.real[TIME] - time, memory.count[STEPS] - steps, logs, status)
+            status = Status(
+                advance(
+                    system, stepper, options, changes, band, end, STEPS_BETWEEN_ORTHONORMALISATIONS
+                )
+            )
+            logs += _orthonormalise(changes, moving)
+        yield Block(stepper.real[TIME] - time, stepper.count[STEPS] - steps, logs, status)
         if status is not Status.DONE:
             return
 
 
 def mean_rates(blocks: list[Block], rtol: float) -> tuple[Array, Array]:
-    """Return the mean rates of growth, not rising, and their errors, each of shape (k,).
+    """Return mean growth rates in descending order, and their errors.
 
-    The errors are the largest of three: the statistical one, from means over batches; half the
-    difference between the two halves of the time; that of the integration, from the steps that a
-    tolerance `rtol` took.
+    An error is the largest of three: the statistical error, from means over batches; half the
+    difference between the two halves of the time; the error of the integration.
+
+    Parameters
+    ----------
+    blocks : list of Block
+        The whole trajectory.
+    rtol : float
+        Relative tolerance of its steps.
+
+    Returns
+    -------
+    rates, errors : ndarray, shape (k,)
+        The exponents, in units of one over time.
     """
-    counted = blocks[round(TURNING_IN * len(blocks)) :]
-    rates = _rate(counted)
+    counted = blocks[round(TRANSIENT_SHARE * len(blocks)) :]
+    rates = _mean_rates(counted)
     order = np.argsort(-rates)
-    batches = np.array([_rate(batch) for batch in _cut(counted, BATCHES)])
+    batches = np.array([_mean_rates(batch) for batch in _split(counted, BATCHES)])
     statistical = batches.std(axis=0, ddof=1) / np.sqrt(BATCHES)
-    first, last = (_rate(half) for half in _cut(counted, 2))
+    first, last = (_mean_rates(half) for half in _split(counted, 2))
     steps, time = sum(block.steps for block in counted), sum(block.time for block in counted)
     integration = STEP_ERROR_IN_RTOL * rtol * steps / time
     errors = np.maximum(np.maximum(statistical, 0.5 * np.abs(first - last)), integration)
     return rates[order], errors[order]
 
 
-def _rate(blocks: list[Block]) -> Array:
+def _mean_rates(blocks: list[Block]) -> Array:
     return np.asarray(sum(block.logs for block in blocks) / sum(block.time for block in blocks))
 
 
-def _cut(blocks: list[Block], parts: int) -> list[list[Block]]:
+def _split(blocks: list[Block], parts: int) -> list[list[Block]]:
     ends = np.linspace(0, len(blocks), parts + 1).round().astype(int)
     return [blocks[first:last] for first, last in pairwise(ends)]
 
 
-def _made_orthonormal(changes: Array, moving: Array) -> Array:
-    """Make the changes (k, rows, n) orthonormal in place; return logarithms of their sizes (k,).
+def _orthonormalise(changes: Array, moving: Array) -> Array:
+    """Orthonormalise the changes (k, rows, n) in place; return the logarithms (k,) of their norms.
 
-    The combinations of them that make their first rows so are taken of their whole histories.
+    The linear combinations that orthonormalise the first rows are applied to all rows.
     """
     triangle = np.linalg.qr(changes[:, 0, moving].T)[1]
     histories = changes.reshape(len(triangle), -1)

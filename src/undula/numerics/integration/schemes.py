@@ -24,6 +24,7 @@ class BackwardDifferentiation:
     Attributes
     ----------
     name : str
+        Name of the family.
     kappa : tuple of float
         kappa_k for k = 1..max order; the order of member k is k.
     stability_angle : tuple of float
@@ -43,7 +44,7 @@ class BackwardDifferentiation:
     def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Gamma, alpha = (1 - kappa) gamma and the error constants, indexed by order.
 
-        Index 0 is a placeholder; the error constants go on to max order + 1 with kappa = 0.
+        Index 0 is a placeholder. All three continue to max order + 1, with kappa = 0.
         """
         orders = np.arange(1, self.max_order + 1)
         kappa = np.concatenate(([0.0], self.kappa, [0.0]))

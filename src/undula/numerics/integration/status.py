@@ -1,10 +1,10 @@
-"""Outcomes of a computation, as values with advice."""
+"""Outcomes of the time loop, as values with advice."""
 
 from enum import Enum
 
 
 class Status(Enum):
-    """How the time loop came back."""
+    """Reason why the time loop returned."""
 
     DONE = 0
     PAUSED = 1
@@ -13,7 +13,7 @@ class Status(Enum):
 
     @property
     def advice(self) -> str:
-        """What happened and what to do, in one sentence."""
+        """Outcome and cure, in one sentence."""
         return _ADVICE[self]
 
 

@@ -1,18 +1,19 @@
 """One implicit step: predict, solve by a simplified Newton method, estimate the error.
 
-Errors and corrections are measured by the system's own norm, `size`, in units of
+Errors and corrections are measured in the system's own norm, `error_norm`, in units of
 
-    scale = atol + rtol * size(distance from the reference state).
+    scale = atol + rtol * error_norm(y - reference state).
 
-It does not change when the system turns, and a small motion is computed as accurately as a large
-one. A rod measures tangents, not positions: their errors are what the energy and the lengths feel.
+The norm is invariant under rotation, and the scale gives a small motion the same relative accuracy
+as a large one. The norm of a rod is that of tangents, not of positions, since errors of tangents
+enter the energy and the lengths.
 
-In the co-rotating frame positions are y = Q(-angle) x and the turning rate Omega is one more
+In the co-rotating frame positions are y = Q(-angle) x and the rate of rotation Omega is one more
 unknown, fixed by the condition that the motion in the frame has no component along the rotation:
 
     R(y) (w + c Omega S y) = c f(y, z),    <S y, w> = 0,    w = c dy/dt.
 
-The angle is integrated beside, like the power put in and the power dissipated, by the same formula.
+The same formula integrates the angle, the active power and the dissipation.
 """
 
 import math
@@ -27,42 +28,60 @@ from undula.numerics.integration.stepper_state import CONTRACTION, IN_FRAME, ORD
 from undula.numerics.integration.system import (
     RATES,
     constraint_error,
+    error_norm,
     generator,
     rates,
     residual,
-    size,
 )
 
-#: Corrections a step may take before its matrix is made anew or its length is cut.
-MOST_CORRECTIONS = 5
-#: A correction that grows by this factor diverges.
+#: Newton corrections of a step before its matrix is reassembled or its length reduced.
+MAX_CORRECTIONS = 5
+#: Growth of a correction from one iteration to the next beyond which the iteration diverges.
 DIVERGENCE = 2.0
-#: What a converging iteration may leave, as a fraction of the error allowed in a step.
+#: Error that a converged iteration may leave, as a fraction of the error allowed in a step.
 NEWTON_FRACTION = 0.05
-#: A contraction that is used unmeasured grows by this factor a step.
+#: Factor a step by which a contraction rate grows that is used but not measured.
 CONTRACTION_AGEING = 1.2
-#: Constraints are met to this many rtol.
+#: Largest violation of the constraints, in units of rtol.
 CONSTRAINT_IN_RTOL = 2.0
-#: The remembered contraction is forgotten at most this fast.
-CONTRACTION_MEMORY = 0.3
+#: Smallest factor by which a stored contraction rate falls in one iteration.
+CONTRACTION_DECAY = 0.3
 
 
 class Options(NamedTuple):
-    """What a stepper is told: tolerances, the norm, and the tables of its scheme."""
+    """Options of a stepper: tolerances, norm, frame, and the tables of its scheme.
+
+    Attributes
+    ----------
+    rtol, atol : float
+        Tolerances of the error of a step, see the module.
+    mask : ndarray, shape (n,)
+        1 for positions, 0 for multipliers.
+    reference : ndarray, shape (n,)
+        The state from which displacements are measured.
+    stale_after : float
+        Displacement of a position since assembly beyond which a matrix is stale.
+    longest_step : float
+        Upper limit of the step.
+    frame : {0, 1}
+        0 for the lab frame, 1 for the co-rotating frame whenever it allows longer steps.
+    gamma, alpha, error : ndarray, shape (max order + 2,)
+        Tables of the scheme, see `undula.numerics.integration.schemes`.
+    """
 
     rtol: float
     atol: float
-    mask: np.ndarray  # (n,) 1 for positions, 0 for multipliers
-    reference: np.ndarray  # (n,) the state that displacements are measured from
-    stale_after: float  # a matrix is stale when a position has moved so far since
+    mask: np.ndarray
+    reference: np.ndarray
+    stale_after: float
     longest_step: float
-    frame: int  # 0 lab, 1 co-rotating when it pays
+    frame: int
     gamma: np.ndarray
     alpha: np.ndarray
     error: np.ndarray
 
 
-#: What options have to be beside the memory that they go with, see `undula.jit.sizes`.
+#: Shapes of the options, next to `STEPPER_SIZES` in a declaration, see `undula.jit.sizes`.
 OPTIONS_SIZES = (
     "options.mask (n), options.reference (n), options.gamma (r - 1), options.alpha (r - 1),"
     " options.error (r - 1)"
@@ -80,7 +99,24 @@ def options(
     longest_step: float,
     frame: bool,
 ) -> Options:
-    """Gather the options of a stepper of `scheme`."""
+    """Return the options of a stepper.
+
+    Parameters
+    ----------
+    scheme : BackwardDifferentiation
+        The family of formulas.
+    mask, reference : ndarray, shape (n,)
+        As in `Options`.
+    rtol, atol, stale_after, longest_step : float
+        As in `Options`.
+    frame : bool
+        Whether the co-rotating frame may be used.
+
+    Returns
+    -------
+    Options
+        The record for compiled code.
+    """
     gamma, alpha, error = scheme.tables
     return Options(
         rtol, atol, mask, reference, stale_after, longest_step, int(frame), gamma, alpha, error
@@ -97,17 +133,17 @@ def dot(a: Any, b: Any, mask: Any) -> Any:
 
 
 @kernel
-def predict(system: Any, memory: Any, options: Any, work: Any) -> Any:
-    """Extrapolate to the end of the step; return its parameter c and the scale of its errors."""
-    order, n = memory.count[ORDER], work.y.shape[0]
-    differences = memory.differences
+def predict(system: Any, stepper: Any, options: Any, work: Any) -> Any:
+    """Extrapolate to the end of the step; return the parameter c and the scale of errors."""
+    order, n = stepper.count[ORDER], work.y.shape[0]
+    differences = stepper.differences
     inverse = 1.0 / options.alpha[order]
     first = options.gamma[1] * inverse
     for i in range(differences.shape[1]):
         work.predicted[i] = differences[0, i] + differences[1, i]
     for i in range(differences.shape[1]):  # loops over both arrays would not be vectorised
         work.psi[i] = first * differences[1, i]
-    for j in range(2, order, 2):  # two differences at a time: memory is what it waits for
+    for j in range(2, order, 2):  # two differences at a time, as memory access limits the speed
         factor, next_factor = options.gamma[j] * inverse, options.gamma[j + 1] * inverse
         for i in range(differences.shape[1]):
             work.predicted[i] += differences[j, i] + differences[j + 1, i]
@@ -122,13 +158,13 @@ def predict(system: Any, memory: Any, options: Any, work: Any) -> Any:
     for i in range(n):
         work.y[i] = work.predicted[i]
         work.w[i] = work.y[i] - options.reference[i]
-    scale = options.atol + options.rtol * size(system, work.w, options.mask)
-    return memory.real[STEP] * inverse, scale
+    scale = options.atol + options.rtol * error_norm(system, work.w, options.mask)
+    return stepper.real[STEP] * inverse, scale
 
 
 @kernel
 def update_iterate(system: Any, work: Any, in_frame: Any, turn: Any) -> None:
-    """Bring y, w and S y up to date with the change found so far and the turn c Omega."""
+    """Update y, w and S y from the present change and the rotation c Omega of the step."""
     n = work.y.shape[0]
     for i in range(n):
         work.y[i] = work.predicted[i] + work.change[i]
@@ -140,31 +176,31 @@ def update_iterate(system: Any, work: Any, in_frame: Any, turn: Any) -> None:
 
 
 @kernel
-def one_correction(system: Any, memory: Any, options: Any, work: Any, c: Any, turn: Any) -> Any:
-    """Apply one Newton correction; return its size, that of the turn included, and the new turn."""
+def newton_correction(system: Any, stepper: Any, options: Any, work: Any, c: Any, turn: Any) -> Any:
+    """Apply one Newton correction; return its norm, rotation included, and the new c Omega."""
     n = work.y.shape[0]
-    in_frame = memory.count[IN_FRAME] == 1
+    in_frame = stepper.count[IN_FRAME] == 1
     delta, rotation_change = work.correction, 0.0
     residual(system, work.y, work.w, c, delta)
-    solve_frozen(system, memory, work, delta)
+    solve_frozen(system, stepper, work, delta)
     if in_frame:
         phase_residual = dot(work.phase, work.y, options.mask) - dot(
             work.phase, delta, options.mask
         )
-        turn_change = phase_residual / dot(work.phase, memory.border, options.mask)
+        turn_change = phase_residual / dot(work.phase, stepper.border, options.mask)
         turn += turn_change
-        rotation_change = turn_change * size(system, work.turning, options.mask)
+        rotation_change = turn_change * error_norm(system, work.turning, options.mask)
         for i in range(n):
-            delta[i] += turn_change * memory.border[i]
+            delta[i] += turn_change * stepper.border[i]
     for i in range(n):
         work.change[i] -= delta[i]
-    return math.hypot(size(system, delta, options.mask), rotation_change), turn
+    return math.hypot(error_norm(system, delta, options.mask), rotation_change), turn
 
 
 @kernel
-def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: Any) -> Any:
-    """Solve for the end of the step; return whether it converged, and the turn c Omega."""
-    in_frame = memory.count[IN_FRAME] == 1
+def correct(system: Any, stepper: Any, options: Any, work: Any, c: Any, scale: Any) -> Any:
+    """Solve for the end of the step; return whether the iteration converged."""
+    in_frame = stepper.count[IN_FRAME] == 1
     n = work.y.shape[0]
     if in_frame:
         for i in range(n):
@@ -173,14 +209,14 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
     for attempt in range(2):
         for i in range(work.change.shape[0]):
             work.change[i] = 0.0
-        turn = work.psi[n] if in_frame else 0.0  # extrapolates the rate
+        turn = work.psi[n] if in_frame else 0.0  # extrapolated from past steps
         update_iterate(system, work, in_frame, turn)
-        fresh = attempt == 1 or is_stale(system, memory, options, work, c)
-        if fresh and not reassemble(system, memory, work, c, scale, turn):
+        fresh = attempt == 1 or is_stale(system, stepper, options, work, c)
+        if fresh and not reassemble(system, stepper, work, c, scale, turn):
             break
-        if iterate(system, memory, options, work, c, scale, turn):
+        if iterate(system, stepper, options, work, c, scale, turn):
             return True
-        memory.real[CONTRACTION] = 1.0
+        stepper.real[CONTRACTION] = 1.0
         if fresh:
             break
     return False
@@ -188,32 +224,35 @@ def correct(system: Any, memory: Any, options: Any, work: Any, c: Any, scale: An
 
 @kernel
 def iterate(
-    system: Any, memory: Any, options: Any, work: Any, c: Any, scale: Any, turn: Any
+    system: Any, stepper: Any, options: Any, work: Any, c: Any, scale: Any, turn: Any
 ) -> Any:
-    """Correct with one factored matrix until the rest is negligible; False where it is not."""
-    in_frame = memory.count[IN_FRAME] == 1
+    """Correct with one factored matrix until the error is negligible; False on failure."""
+    in_frame = stepper.count[IN_FRAME] == 1
     allowed = CONSTRAINT_IN_RTOL * options.rtol
     previous = 0.0
-    for m in range(MOST_CORRECTIONS):
-        found, turn = one_correction(system, memory, options, work, c, turn)
-        if not np.isfinite(found) or (m > 0 and found > DIVERGENCE * previous):
+    for m in range(MAX_CORRECTIONS):
+        correction_norm, turn = newton_correction(system, stepper, options, work, c, turn)
+        if not np.isfinite(correction_norm) or (m > 0 and correction_norm > DIVERGENCE * previous):
             return False
         if m > 0 and previous > 0.0:
-            remembered = CONTRACTION_MEMORY * memory.real[CONTRACTION]
-            memory.real[CONTRACTION] = max(remembered, found / previous)
-        previous = found
+            decayed = CONTRACTION_DECAY * stepper.real[CONTRACTION]
+            stepper.real[CONTRACTION] = max(decayed, correction_norm / previous)
+        previous = correction_norm
         update_iterate(system, work, in_frame, turn)
-        left = found * min(1.0, memory.real[CONTRACTION])
-        if left <= NEWTON_FRACTION * scale and constraint_error(system, work.y) <= allowed:
+        remaining_error = correction_norm * min(1.0, stepper.real[CONTRACTION])
+        if (
+            remaining_error <= NEWTON_FRACTION * scale
+            and constraint_error(system, work.y) <= allowed
+        ):
             if m == 0:
-                memory.real[CONTRACTION] = min(1.0, CONTRACTION_AGEING * memory.real[CONTRACTION])
+                stepper.real[CONTRACTION] = min(1.0, CONTRACTION_AGEING * stepper.real[CONTRACTION])
             return True
     return False
 
 
 @kernel
 def integrate_rates(system: Any, work: Any, c: Any) -> None:
-    """Advance the angle and the integrals of power by the formula that moved the positions."""
+    """Advance the angle and the integrals of power by the formula of the positions."""
     n, inverse = work.y.shape[0], 1.0 / c
     for i in range(n):
         work.correction[i] = work.w[i] * inverse

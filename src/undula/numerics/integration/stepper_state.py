@@ -1,4 +1,4 @@
-"""The whole memory of a stepper: what a checkpoint holds, so that a resumed run is the same run."""
+"""The complete state of a stepper; checkpoints store it, so that a resumed run is the same run."""
 
 from typing import Any, NamedTuple
 
@@ -8,38 +8,40 @@ from undula.jit.compilation import kernel
 from undula.numerics.integration.schemes import BackwardDifferentiation
 from undula.numerics.integration.system import RATES
 
-#: Entries of `Memory.real`.
+#: Indices of `StepperState.real`.
 TIME, STEP, PLANNED_FACTOR, FACTORED_C, FACTORED_ANGLE, CONTRACTION = range(6)
 TURN_RATE, SPEED, SHAPE_SPEED, DISPLACEMENT, STORING_RATE, SMALLEST_STEP, LARGEST_STEP = range(
     6, 13
 )
 REALS = 13
-#: Entries of `Memory.count`.
+#: Indices of `StepperState.count`.
 ORDER, PLANNED_ORDER, EQUAL_STEPS, STEPS, REJECTED, FAILED, FACTORISATIONS, SOLVES = range(8)
 IN_FRAME, FRAME_VOTES, FRAME_CHANGES, PLANAR = range(8, 12)
 COUNTS = 12
-#: What a memory has to be for compiled code to keep inside of it, see `undula.jit.sizes`.
-MEMORY_SIZES = (
-    f"memory.factored_at (n), memory.differences (r, n + {RATES}), memory.factors (n, b),"
-    f" memory.border (n), memory.real ({REALS}), memory.count ({COUNTS}) int"
+#: Shapes of a stepper's arrays, for the declarations of entry points, see `undula.jit.sizes`.
+STEPPER_SIZES = (
+    f"stepper.factored_at (n), stepper.differences (r, n + {RATES}), stepper.factors (n, b),"
+    f" stepper.border (n), stepper.real ({REALS}), stepper.count ({COUNTS}) int"
 )
 
 
 class StepperState(NamedTuple):
-    """Arrays that a stepper changes in place, for n unknowns and the integrals of their rates.
+    """Arrays of a stepper, changed in place, for n unknowns and `RATES` integrals.
 
     Attributes
     ----------
     differences : ndarray, shape (max order + 3, n + RATES)
-        Backward differences of the unknowns and, behind them, of the integrals.
+        Backward differences of the unknowns, followed by those of the integrals.
     factors : ndarray, shape (n, 2 b + 1)
-        The factored matrix of Newton's method; count[PLANAR] is 1 if it is a planar one.
+        The factored matrix of Newton's method; count[PLANAR] is 1 if it is the planar matrix.
     factored_at : ndarray, shape (n,)
-        The state that it belongs to, in its own orientation.
+        The state at which it was assembled, in the orientation of the matrix.
     border : ndarray, shape (n,)
-        Its solve with the column that belongs to the turning rate.
-    real, count : ndarray
-        Times, steps and rates; order and counters. The names above are their indices.
+        Its solution for the column of the rate of rotation.
+    real : ndarray, shape (REALS,)
+        Times, steps and rates, by the indices above.
+    count : ndarray of int, shape (COUNTS,)
+        Orders, counters and flags, by the indices above.
     """
 
     differences: np.ndarray
@@ -58,9 +60,27 @@ def start(
     time: float,
     step: float,
 ) -> StepperState:
-    """Return the memory of a stepper about to take its first step from y (n,) at `time`.
+    """Return a stepper before its first step.
 
-    `rates` (n + RATES,) is the rate of change there of the unknowns and of the integrals.
+    Parameters
+    ----------
+    system : NamedTuple
+        The system, see `undula.numerics.integration.system`.
+    scheme : BackwardDifferentiation
+        The family of formulas.
+    y : ndarray, shape (n,)
+        Unknowns at the start.
+    rates : ndarray, shape (n + RATES,)
+        Rates of change of the unknowns and of the integrals at the start.
+    time : float
+        Time of the start.
+    step : float
+        First step, above 0.
+
+    Returns
+    -------
+    StepperState
+        A stepper of order 1.
     """
     n = y.size
     differences = np.zeros((scheme.max_order + 3, n + RATES))
@@ -73,8 +93,8 @@ def start(
 
 
 @kernel
-def has_its_orders(memory: Any) -> Any:
-    """Tell whether a memory has the differences that its order and the next one take."""
-    highest = memory.differences.shape[0] - 3
-    order, planned = memory.count[ORDER], memory.count[PLANNED_ORDER]
+def orders_are_valid(stepper: Any) -> Any:
+    """Return whether a stepper has the differences that its order and its planned order need."""
+    highest = stepper.differences.shape[0] - 3
+    order, planned = stepper.count[ORDER], stepper.count[PLANNED_ORDER]
     return 0 < order <= highest and 0 < planned <= highest

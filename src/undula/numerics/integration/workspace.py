@@ -1,4 +1,4 @@
-"""The scratch of a step, made once for many steps."""
+"""Scratch arrays of a step, allocated once for many steps."""
 
 from typing import Any, NamedTuple
 
@@ -7,28 +7,50 @@ import numpy as np
 from undula.jit.compilation import kernel
 from undula.numerics.integration.system import RATES
 
-#: Backward differentiation of a higher order is unstable.
+#: Highest order of backward differentiation that is zero-stable.
 HIGHEST_ORDER = 6
 
 
 class Work(NamedTuple):
-    """Scratch of a step, so that a step allocates nothing; slices of arrays would count as well."""
+    """Scratch of a step, so that a step allocates no memory.
 
-    predicted: np.ndarray  # (n + RATES,)
-    psi: np.ndarray  # (n + RATES,) w = y - predicted + psi
-    change: np.ndarray  # (n + RATES,) y - predicted
-    y: np.ndarray  # (n,)
+    Attributes
+    ----------
+    predicted : ndarray, shape (n + RATES,)
+        Extrapolated unknowns and integrals.
+    psi : ndarray, shape (n + RATES,)
+        Contribution of past steps to w = y - predicted + psi.
+    change : ndarray, shape (n + RATES,)
+        The unknowns less their prediction.
+    y, w : ndarray, shape (n,)
+        The iterate, and c dy/dt.
+    turning : ndarray, shape (n,)
+        S y.
+    phase : ndarray, shape (n,)
+        S psi: a step without rotation in the frame has <S psi, y> = 0.
+    correction : ndarray, shape (n,)
+        Newton's correction.
+    rates : ndarray, shape (RATES,)
+        Rates of the integrals.
+    series : ndarray, shape (2, HIGHEST_ORDER + 1)
+        Coefficients for a change of the step.
+    """
+
+    predicted: np.ndarray
+    psi: np.ndarray
+    change: np.ndarray
+    y: np.ndarray
     w: np.ndarray
-    turning: np.ndarray  # S y
-    phase: np.ndarray  # S psi: a step without rotation in the frame has <S psi, y> = 0
+    turning: np.ndarray
+    phase: np.ndarray
     correction: np.ndarray
-    rates: np.ndarray  # (RATES,)
-    series: np.ndarray  # (2, HIGHEST_ORDER + 1) for a change of step
+    rates: np.ndarray
+    series: np.ndarray
 
 
 @kernel
 def workspace(n: Any) -> Any:
-    """Return the scratch of a stepper of n unknowns."""
+    """Return scratch for n unknowns."""
     m = n + RATES
     return Work(
         np.zeros(m),

@@ -1,16 +1,16 @@
-"""All parameters at which eigenvalues of a small pencil cancel or meet, at once.
+"""All parameters at which eigenvalues of a small pencil cancel or coalesce, in one computation.
 
 For the pencil K(p) + sigma M with K(p) = K0 + p K1 consider antisymmetric matrices T.
 
-- Crossings. T -> K T M' + M T K' is singular exactly where sigma_i + sigma_j = 0 for some pair:
-  at a complex pair on the imaginary axis, or at two real ones of opposite sign. It is linear in p,
-  so that 1/p are the eigenvalues of one matrix of size n (n - 1) / 2.
+- Crossings. T -> K T M' + M T K' is singular exactly where sigma_i + sigma_j = 0 for some pair: a
+  complex pair on the imaginary axis, or two real eigenvalues of opposite sign. It is linear in p,
+  so that the values 1/p are the eigenvalues of one matrix of size n (n - 1) / 2.
 - Coalescences. With A = -M^-1 K, T -> A^2 T + T A'^2 - 2 A T A' has the eigenvalues
-  (sigma_i - sigma_j)^2, so that it is singular exactly where two eigenvalues meet. It is quadratic
-  in p, which doubles the size.
+  (sigma_i - sigma_j)^2, so that it is singular exactly where two eigenvalues coalesce. It is
+  quadratic in p, which doubles the size.
 
-Nothing is scanned and nothing can be stepped over; what limits the answer is how well n functions
-stand for the whole problem, so it serves as a start for `undula.numerics.linalg.critical_points`.
+No range of p is scanned, so that none of them is missed. The error is that of the reduction to n
+functions; the results are starting points for `undula.numerics.linalg.critical_points`.
 
 Source: the bialternate product, Fuller (1968), J. Math. Anal. Appl. 23, 71; Govaerts (2000),
 Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 4.
@@ -23,31 +23,54 @@ import numpy as np
 from undula.arrays import Array, ComplexArray
 from undula.numerics.linalg.pencil import LinearPencil, eigenvalues
 
-# Round-off splits a root off the real axis by about the root of the machine precision at worst.
-_REAL = 1e-6
-# It splits two that meet by the root of the error of p, which their ill-conditioned map enlarges.
-_TOGETHER = 0.1
+# Largest imaginary part, relative, of a real root: round-off leaves the root of the precision.
+_REAL_TOLERANCE = 1e-6
+# Largest relative distance of two coalescing eigenvalues: they differ by the root of the error of
+# p, and their map is ill-conditioned.
+_PAIR_TOLERANCE = 0.1
 
 
 def crossings(pencil: LinearPencil) -> list[tuple[float, float]]:
-    """Return (p, omega), p > 0 rising, wherever a pair +- i omega lies on the imaginary axis."""
+    """Return all parameters at which a pair +- i omega lies on the imaginary axis.
+
+    Parameters
+    ----------
+    pencil : LinearPencil
+        A pencil of small size n; the cost is of order n^6.
+
+    Returns
+    -------
+    list of (float, float)
+        (p, omega), p > 0 ascending.
+    """
     if pencil.mass.shape[0] < 2:
         return []
-    base = _wedge(pencil.base, pencil.mass)
-    change = _wedge(pencil.change, pencil.mass)
-    found = []
+    base = _bialternate_product(pencil.base, pencil.mass)
+    change = _bialternate_product(pencil.change, pencil.mass)
+    pairs = []
     for p in _positive_real(np.linalg.eigvals(-np.linalg.solve(base, change))):
         values = eigenvalues(pencil.stiffness(p), pencil.mass)
-        swinging = values[values.imag > 0.0]
-        if swinging.size:
-            nearest = swinging[np.argmin(np.abs(swinging.real) / np.abs(swinging))]
-            if abs(nearest.real) < _REAL * abs(nearest):
-                found.append((p, float(nearest.imag)))
-    return found
+        oscillatory = values[values.imag > 0.0]
+        if oscillatory.size:
+            nearest = oscillatory[np.argmin(np.abs(oscillatory.real) / np.abs(oscillatory))]
+            if abs(nearest.real) < _REAL_TOLERANCE * abs(nearest):
+                pairs.append((p, float(nearest.imag)))
+    return pairs
 
 
 def coalescences(pencil: LinearPencil) -> list[tuple[float, float]]:
-    """Return (p, sigma), p > 0 rising, wherever two real eigenvalues meet at sigma."""
+    """Return all parameters at which two real eigenvalues coalesce.
+
+    Parameters
+    ----------
+    pencil : LinearPencil
+        A pencil of small size n; the cost is of order n^6.
+
+    Returns
+    -------
+    list of (float, float)
+        (p, sigma), p > 0 ascending, with the double eigenvalue sigma.
+    """
     if pencil.mass.shape[0] < 2:
         return []
     rates = _rates(pencil.mass, pencil.base)
@@ -58,19 +81,19 @@ def coalescences(pencil: LinearPencil) -> list[tuple[float, float]]:
     size = constant.shape[0]
     companion = np.eye(2 * size, k=-size)
     companion[:size] = -np.linalg.solve(constant, np.hstack([linear, quadratic]))
-    found = [
-        (p, _meeting(eigenvalues(pencil.stiffness(p), pencil.mass)))
+    pairs = [
+        (p, _closest_midpoint(eigenvalues(pencil.stiffness(p), pencil.mass)))
         for p in _positive_real(np.linalg.eigvals(companion))
     ]
-    return [(p, sigma) for p, sigma in found if sigma is not None]
+    return [(p, sigma) for p, sigma in pairs if sigma is not None]
 
 
 def _rates(mass: Array, stiffness: Array) -> Array:
     return -np.asarray(np.linalg.solve(mass, stiffness), dtype=np.float64)
 
 
-def _wedge(a: Array, b: Array) -> Array:
-    """Return T -> A T B' + B T A' on antisymmetric matrices."""
+def _bialternate_product(a: Array, b: Array) -> Array:
+    """Return the matrix of T -> A T B' + B T A' on antisymmetric matrices."""
     i, j = np.triu_indices(a.shape[0], 1)
 
     def minors(p: Array, q: Array) -> Array:
@@ -80,23 +103,25 @@ def _wedge(a: Array, b: Array) -> Array:
 
 
 def _difference_squared(a: Array, b: Array) -> Array:
-    """Return the bilinear form whose square is T -> A^2 T + T A'^2 - 2 A T A'."""
-    one = np.eye(a.shape[0])
-    return 0.5 * _wedge(a @ b + b @ a, one) - _wedge(a, b)
+    """Return the bilinear form in A, B that is T -> A^2 T + T A'^2 - 2 A T A' for B = A."""
+    identity = np.eye(a.shape[0])
+    return 0.5 * _bialternate_product(a @ b + b @ a, identity) - _bialternate_product(a, b)
 
 
 def _positive_real(inverse: Any) -> list[float]:
-    """Return the parameters p > 0, rising, of real inverse ones."""
-    sizeable = np.abs(inverse) > inverse.size * np.finfo(float).eps * np.abs(inverse).max()
-    real = sizeable & (np.abs(inverse.imag) < _REAL * np.abs(inverse)) & (inverse.real > 0.0)
+    """Return the parameters p > 0, ascending, that belong to real values of 1/p."""
+    resolved = np.abs(inverse) > inverse.size * np.finfo(float).eps * np.abs(inverse).max()
+    real = (
+        resolved & (np.abs(inverse.imag) < _REAL_TOLERANCE * np.abs(inverse)) & (inverse.real > 0.0)
+    )
     return sorted(float(p) for p in 1.0 / inverse.real[real])
 
 
-def _meeting(values: ComplexArray) -> float | None:
-    """Return the middle of the two that differ least for their size; None if none are near."""
+def _closest_midpoint(values: ComplexArray) -> float | None:
+    """Return the mean of the two closest eigenvalues, relatively; None if no two are close."""
     i, j = np.triu_indices(values.size, 1)
     middle, half = 0.5 * (values[i] + values[j]), 0.5 * np.abs(values[i] - values[j])
-    near = (middle.imag == 0.0) & (half < _TOGETHER * np.abs(middle))
+    near = (middle.imag == 0.0) & (half < _PAIR_TOLERANCE * np.abs(middle))
     if not near.any():
         return None
     closest = np.argmin(half[near] / np.abs(middle[near]))

@@ -1,4 +1,4 @@
-"""Newton's method on parameters at which a pencil is singular in a prescribed way.
+"""Newton's method for parameters at which eigenvalues of a pencil cross the axis or coalesce.
 
 The matrix A = K(p) + sigma M, bordered by two vectors,
 
@@ -7,7 +7,7 @@ The matrix A = K(p) + sigma M, bordered by two vectors,
 
 is regular where A is singular with a simple null vector, and g vanishes exactly there. Derivatives
 of g follow from the same factors: with w the solution of the adjoint system, g_x = -w' A_x c. The
-borders are turned towards the null vectors as these become known.
+borders are updated to the approximate null vectors in each step.
 
 Source: Griewank & Reddien (1983), IMA J. Numer. Anal. 3, 295; Govaerts (2000), Numerical Methods
 for Bifurcations of Dynamical Equilibria, chapter 3.
@@ -24,24 +24,24 @@ import scipy.linalg as sl
 from undula.arrays import Array, ComplexArray
 from undula.numerics.linalg.pencil import Pencil
 
-_MOST_STEPS = 40
-# Quadratic convergence: a step this small, relative to the unknown, leaves nothing but round-off.
-_SMALL_STEP = 1e-9
-# The borders are turned this often before the first step: without, a guess that is 5 per cent off
-# is often too far; with more it makes no difference.
-_FIRST_TURNS = 2
+_MAX_STEPS = 40
+# Relative step after which quadratic convergence leaves only round-off.
+_STEP_TOLERANCE = 1e-9
+# Updates of the borders before the first step. Without them the method often fails from a guess
+# with an error of 5 per cent; more of them make no difference.
+_INITIAL_UPDATES = 2
 
 
 @dataclass(frozen=True)
 class CriticalPair:
-    """A complex pair +- i omega of a pencil, at the parameter at which it crosses the axis.
+    """A complex pair +- i omega of a pencil on the imaginary axis.
 
     Attributes
     ----------
     p, omega : float
-        Parameter and imaginary part.
+        Parameter of the crossing, and imaginary part.
     slope : float
-        Change of the real part with the parameter.
+        Derivative of the real part by the parameter.
     vector : ndarray of shape (n,)
         Null vector c of K(p) + i omega M.
     round_off : float
@@ -57,7 +57,15 @@ class CriticalPair:
 
 @dataclass(frozen=True)
 class Coalescence:
-    """Two real eigenvalues of a pencil that meet at sigma, at the parameter p."""
+    """Two real eigenvalues of a pencil that coalesce.
+
+    Attributes
+    ----------
+    p, sigma : float
+        Parameter, and double eigenvalue.
+    round_off : float
+        Bound on the error of p by round-off.
+    """
 
     p: float
     sigma: float
@@ -65,16 +73,29 @@ class Coalescence:
 
 
 def refine_crossing(pencil: Pencil, p: float, omega: float) -> CriticalPair | None:
-    """Return the crossing near a guess; None if Newton's method finds none with p, omega > 0."""
+    """Return the crossing near a guess.
+
+    Parameters
+    ----------
+    pencil : Pencil
+        The pencil.
+    p, omega : float
+        Guess of parameter and imaginary part, above 0.
+
+    Returns
+    -------
+    CriticalPair or None
+        The crossing; None if Newton's method does not converge to p, omega > 0.
+    """
     mass = pencil.mass
     border = None
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         stiffness, slope = pencil.stiffness(p), pencil.slope(p)
         if not np.isfinite(stiffness + slope).all():
             return None
         matrix = stiffness + 1j * omega * mass
         border = border or _Border(matrix)
-        bordered = border.around(matrix)
+        bordered = border.factored(matrix)
         by_p, by_omega = bordered.change(slope), bordered.change(1j * mass)
         jacobian = np.array([[by_p.real, by_omega.real], [by_p.imag, by_omega.imag]])
         step = _newton_step(jacobian, np.array([bordered.g.real, bordered.g.imag]))
@@ -83,28 +104,41 @@ def refine_crossing(pencil: Pencil, p: float, omega: float) -> CriticalPair | No
             return None
         by_sigma = bordered.change(mass)
         rate_by_p = -by_p / by_sigma
-        noise = bordered.noise(np.abs(stiffness) + omega * np.abs(mass)) / abs(by_sigma)
-        spread = float(noise / abs(rate_by_p.real))
-        # Of a stiff pencil round-off may leave less than a small step asks for.
-        small = abs(step[0]) < max(_SMALL_STEP * p, spread)
-        if small and abs(step[1]) < max(_SMALL_STEP * omega, noise):
-            return CriticalPair(p, omega, float(rate_by_p.real), bordered.c, spread)
+        round_off = bordered.round_off(np.abs(stiffness) + omega * np.abs(mass)) / abs(by_sigma)
+        p_error = float(round_off / abs(rate_by_p.real))
+        # The round-off of a stiff pencil may exceed the tolerance of the step.
+        small = abs(step[0]) < max(_STEP_TOLERANCE * p, p_error)
+        if small and abs(step[1]) < max(_STEP_TOLERANCE * omega, round_off):
+            return CriticalPair(p, omega, float(rate_by_p.real), bordered.c, p_error)
     return None
 
 
 def refine_coalescence(pencil: Pencil, p: float, sigma: float) -> Coalescence | None:
-    """Return the coalescence near a guess; None if Newton's method finds none with p > 0."""
+    """Return the coalescence near a guess.
+
+    Parameters
+    ----------
+    pencil : Pencil
+        The pencil.
+    p, sigma : float
+        Guess of parameter, above 0, and double eigenvalue.
+
+    Returns
+    -------
+    Coalescence or None
+        The coalescence; None if Newton's method does not converge to p > 0.
+    """
     mass = pencil.mass
     border = None
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         stiffness, slope = pencil.stiffness(p), pencil.slope(p)
         if not np.isfinite(stiffness + slope).all():
             return None
         matrix = stiffness + sigma * mass
         border = border or _Border(matrix)
-        bordered = border.around(matrix)
+        bordered = border.factored(matrix)
         by_p, by_sigma = bordered.change(slope), bordered.change(mass)
-        c_by_p, c_by_sigma = bordered.answer(slope), bordered.answer(mass)
+        c_by_p, c_by_sigma = bordered.null_vector_change(slope), bordered.null_vector_change(mass)
         twice = 2.0 * bordered.product(mass @ c_by_sigma)
         mixed = bordered.product(mass @ c_by_p + slope @ c_by_sigma)
         jacobian = np.real([[by_p, by_sigma], [mixed, twice]])
@@ -112,14 +146,14 @@ def refine_coalescence(pencil: Pencil, p: float, sigma: float) -> Coalescence | 
         p, sigma = p + float(step[0]), sigma + float(step[1])
         if not (p > 0.0 and np.isfinite(p + sigma)):
             return None
-        if abs(step[0]) < _SMALL_STEP * p and abs(step[1]) < _SMALL_STEP * abs(sigma):
-            noise = bordered.noise(np.abs(stiffness) + abs(sigma) * np.abs(mass))
-            return Coalescence(p, sigma, float(noise / abs(by_p)))
+        if abs(step[0]) < _STEP_TOLERANCE * p and abs(step[1]) < _STEP_TOLERANCE * abs(sigma):
+            round_off = bordered.round_off(np.abs(stiffness) + abs(sigma) * np.abs(mass))
+            return Coalescence(p, sigma, float(round_off / abs(by_p)))
     return None
 
 
 def _newton_step(jacobian: Array, values: Array) -> Array:
-    """Return the step to where the values vanish; NaN where they do not change."""
+    """Return Newton's step; NaN for a singular Jacobian."""
     try:
         return np.asarray(np.linalg.solve(jacobian, -values))
     except np.linalg.LinAlgError:
@@ -127,31 +161,32 @@ def _newton_step(jacobian: Array, values: Array) -> Array:
 
 
 class _Border:
-    """The two border vectors, turned towards the null vectors from one step to the next."""
+    """The two border vectors, updated to the approximate null vectors in each step."""
 
     def __init__(self, matrix: Any) -> None:
         size = matrix.shape[0]
-        # Any vectors that are not orthogonal to the null vectors will do; these hardly ever are.
+        # Any vectors work that are not orthogonal to the null vectors.
         self.column: Any = np.cos(np.arange(size)) / np.sqrt(size)
         self.row: Any = np.sin(1.0 + np.arange(size)) / np.sqrt(size)
-        for _ in range(_FIRST_TURNS):
-            self.around(matrix)
+        for _ in range(_INITIAL_UPDATES):
+            self.factored(matrix)
 
-    def around(self, matrix: Any) -> _Bordered:
-        bordered = _Bordered(matrix, self.column, self.row)
+    def factored(self, matrix: Any) -> _BorderedMatrix:
+        bordered = _BorderedMatrix(matrix, self.column, self.row)
         self.row = bordered.c / np.linalg.norm(bordered.c)
         self.column = bordered.w / np.linalg.norm(bordered.w)
         return bordered
 
 
-class _Bordered:
-    """A factored bordered matrix with its two solutions c, g and w."""
+class _BorderedMatrix:
+    """A factored bordered matrix with c and g, and the adjoint solution w."""
 
     def __init__(self, matrix: Any, column: Any, row: Any) -> None:
         size = matrix.shape[0]
-        whole = np.zeros((size + 1, size + 1), dtype=np.result_type(matrix, column, row))
-        whole[:size, :size], whole[:size, size], whole[size, :size] = matrix, column, row.conj()
-        self._factors = sl.lu_factor(whole)
+        extended = np.zeros((size + 1, size + 1), dtype=np.result_type(matrix, column, row))
+        extended[:size, :size], extended[:size, size] = matrix, column
+        extended[size, :size] = row.conj()
+        self._factors = sl.lu_factor(extended)
         last = np.zeros(size + 1)
         last[size] = 1.0
         right = sl.lu_solve(self._factors, last)
@@ -159,18 +194,18 @@ class _Bordered:
         self.c, self.g, self.w = right[:size], right[size], left[:size]
 
     def product(self, vector: Any) -> Any:
-        """Return the derivative of g that belongs to a change A_x c of the equations."""
+        """Return the derivative of g for a change A_x c (n,) of the equations."""
         return -np.vdot(self.w, vector)
 
     def change(self, matrix: Any) -> Any:
-        """Return the derivative of g if A changes by `matrix`."""
+        """Return the derivative of g for a change of A by `matrix`."""
         return self.product(matrix @ self.c)
 
-    def answer(self, matrix: Any) -> Any:
-        """Return the derivative of c if A changes by `matrix`."""
+    def null_vector_change(self, matrix: Any) -> Any:
+        """Return the derivative of c for a change of A by `matrix`."""
         return sl.lu_solve(self._factors, np.append(-(matrix @ self.c), 0.0))[:-1]
 
-    def noise(self, sizes: Array) -> float:
-        """Return by how much g may be off if entries of these sizes are rounded."""
-        spread = np.abs(self.w) @ sizes @ np.abs(self.c)
-        return float(np.finfo(float).eps * spread)
+    def round_off(self, sizes: Array) -> float:
+        """Return a bound on the error of g by round-off of entries of these sizes (n, n)."""
+        bound = np.abs(self.w) @ sizes @ np.abs(self.c)
+        return float(np.finfo(float).eps * bound)

@@ -1,4 +1,4 @@
-"""Piecewise polynomials on [0, 1]: Gauss quadrature, and Legendre polynomials with integrals."""
+"""Gauss quadrature and Legendre polynomials, with their integrals, piecewise on [0, 1]."""
 
 from itertools import pairwise
 
@@ -9,7 +9,20 @@ from undula.arrays import Array, Points
 
 
 def gauss(edges: Points, count: int) -> tuple[Points, Points]:
-    """Return points and weights of the Gauss rule with `count` points on each piece."""
+    """Return the composite Gauss rule.
+
+    Parameters
+    ----------
+    edges : ndarray of shape (k + 1,)
+        Ends of the pieces, ascending.
+    count : int
+        Number of points on each piece, at least 1.
+
+    Returns
+    -------
+    points, weights : ndarray of shape (k count,)
+        The rule, exact for piecewise polynomials of degree 2 count - 1.
+    """
     x, weight = legendre.leggauss(count)
     half = 0.5 * np.diff(edges)[:, None]
     middle = 0.5 * (edges[1:] + edges[:-1])[:, None]
@@ -26,7 +39,7 @@ def legendre_elements(edges: Points, degree: int, s: Points) -> tuple[Array, Arr
     degree : int
         Highest degree on each.
     s : ndarray of shape (m,)
-        Points, none of them on an inner edge.
+        Points in [0, 1], not on an inner edge.
 
     Returns
     -------
@@ -49,7 +62,7 @@ def legendre_elements(edges: Points, degree: int, s: Points) -> tuple[Array, Arr
 def _with_integrals(x: Points, degree: int) -> tuple[Array, Array, Array]:
     """Return P_0 .. P_degree at x with their first and second integrals from -1.
 
-    From (2 k + 1) P_k = (P_{k+1} - P_{k-1})', whose bracket vanishes at -1 for k > 0.
+    They follow from (2 k + 1) P_k = (P_{k+1} - P_{k-1})', whose bracket vanishes at -1 for k > 0.
     """
     odd = 2.0 * np.arange(degree + 2) + 1.0
     p = np.asarray(legendre.legvander(x, degree + 2), dtype=np.float64)

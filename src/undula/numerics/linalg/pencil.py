@@ -2,10 +2,10 @@
 
     K(p) c = -sigma M c
 
-with a parameter p. Eigenvalues are computed as s - 1/mu from the operator (K + s M)^-1 M with a
-shift s: the slow ones, which decide on stability, are then those of largest modulus, and accurate
-even where M is compact and most of its own spectrum is lost in round-off. Without a shift one that
-comes close to 0 would outshine all others.
+with a parameter p. Eigenvalues are computed as s - 1/mu from the eigenvalues mu of the operator
+(K + s M)^-1 M with a shift s. The slow eigenvalues, which decide on stability, then have the
+largest |mu|, and are accurate even where M is compact and most of its own spectrum is lost in
+round-off. Without a shift, an eigenvalue close to 0 would spoil the accuracy of all others.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ import scipy.linalg as sl
 
 from undula.arrays import Array, ComplexArray
 
-# Slow, and not a value that a real eigenvalue would have for some reason of its own.
+# A slow rate that is not likely to be an eigenvalue.
 _SHIFT = 0.8414709848078965
 
 
@@ -36,7 +36,13 @@ class Pencil(Protocol):
 
 @dataclass(frozen=True)
 class LinearPencil:
-    """A pencil whose stiffness K(p) = base + p change is linear in the parameter."""
+    """A pencil whose stiffness K(p) = base + p change is linear in the parameter.
+
+    Attributes
+    ----------
+    base, change, mass : ndarray of shape (n, n)
+        The three matrices.
+    """
 
     base: Array
     change: Array
@@ -52,14 +58,38 @@ class LinearPencil:
 
 
 def eigenvalues(stiffness: Array, mass: Array) -> ComplexArray:
-    """Return all resolved sigma of K c = -sigma M c, by falling real part."""
+    """Return the eigenvalues of K c = -sigma M c that are resolved from round-off.
+
+    Parameters
+    ----------
+    stiffness, mass : ndarray of shape (n, n)
+        K and M.
+
+    Returns
+    -------
+    ndarray of shape (m,)
+        The values sigma, by descending real part, m <= n.
+    """
     inverse = np.asarray(np.linalg.eigvals(_inverse(stiffness, mass)), dtype=complex)
     values = _SHIFT - 1.0 / inverse[_resolved(inverse)]
     return np.asarray(values[_by_rate(values)])
 
 
 def eigenpairs(stiffness: Array, mass: Array) -> tuple[ComplexArray, ComplexArray]:
-    """Return all resolved sigma by falling real part, and their vectors c as columns."""
+    """Return the eigenvalues that are resolved from round-off, with their vectors.
+
+    Parameters
+    ----------
+    stiffness, mass : ndarray of shape (n, n)
+        K and M.
+
+    Returns
+    -------
+    values : ndarray of shape (m,)
+        As `eigenvalues` returns.
+    vectors : ndarray of shape (n, m)
+        Their vectors c as columns.
+    """
     inverse, vectors = np.linalg.eig(_inverse(stiffness, mass))
     inverse, vectors = np.asarray(inverse, dtype=complex), np.asarray(vectors, dtype=complex)
     kept = _resolved(inverse)
@@ -69,9 +99,21 @@ def eigenpairs(stiffness: Array, mass: Array) -> tuple[ComplexArray, ComplexArra
 
 
 def reduced(pencil: Pencil, size: int) -> LinearPencil:
-    """Return the pencil on its `size` slowest eigenvectors at p = 0, linear in p.
+    """Return the projection of a pencil on its slowest eigenvectors at p = 0.
 
     A stiffness that is not linear in p is replaced by its tangent at p = 0.
+
+    Parameters
+    ----------
+    pencil : Pencil
+        The pencil.
+    size : int
+        Number of eigenvectors.
+
+    Returns
+    -------
+    LinearPencil
+        Matrices of shape (size, size).
     """
     base, change, mass = pencil.stiffness(0.0), pencil.slope(0.0), pencil.mass
     right, left = _slowest(base, mass, size), _slowest(base.T, mass.T, size)
@@ -95,5 +137,5 @@ def _resolved(inverse: ComplexArray) -> Any:
 
 
 def _by_rate(values: ComplexArray) -> Any:
-    """Return the order by falling real part; of a pair the one above the real axis first."""
+    """Return the order by descending real part, then by descending imaginary part."""
     return np.lexsort((-values.imag, -values.real))

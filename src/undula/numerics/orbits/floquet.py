@@ -1,19 +1,19 @@
-"""Floquet multipliers of an orbit, with those that are known beforehand taken out.
+"""Floquet multipliers of an orbit, with the trivial multipliers deflated.
 
-A monodromy matrix M tells what becomes of small displacements in the course of an orbit, up to its
-symmetry. Some of them are known: the velocity comes back as itself, so does the direction S x of a
-rotation, reversed if the symmetry reverses the rotation. With V an orthonormal basis of these and U
-one of what is orthogonal to them,
+A monodromy matrix M maps small displacements along an orbit, up to its symmetry. Some eigenvectors
+are known: the velocity, and the direction S x of a rotation, which is reversed if the symmetry
+reverses the rotation. With V an orthonormal basis of these trivial directions and U one of their
+orthogonal complement,
 
     [V U]' M [V U] = [ V' M V   V' M U ]
                      [    0     U' M U ],
 
-so that the other multipliers are the eigenvalues of U' M U. Unlike a choice among the eigenvalues
-of M, that is as exact as ever where one of the others meets a known one, at a fold or a branching
-of orbits.
+so that the other multipliers are the eigenvalues of U' M U. A choice among the eigenvalues of M
+would lose accuracy where another multiplier meets a trivial one, at a fold or a branch point of
+orbits; this deflation does not.
 
-Multipliers are exact to about round-off of the largest, so that those which are much smaller than
-1e-15 only tell that they are small.
+Multipliers are exact to about round-off of the largest multiplier: of those much smaller than 1e-15
+only the smallness is known.
 """
 
 from dataclasses import dataclass
@@ -31,20 +31,31 @@ class Floquet:
     Attributes
     ----------
     multipliers : ndarray of shape (k - t,)
-        All but the known ones, by falling modulus.
+        All but the trivial multipliers, by descending modulus.
     vectors : ndarray of shape (k, k - t)
-        Their eigenvectors, of length 1, without their components along the known directions.
-    known_errors : ndarray of shape (t,)
-        By how much each known direction v is no eigenvector, |M v - mu v| / |v|: the error of its
-        multiplier mu, and a measure of that of the others.
+        Their eigenvectors, of length 1, without their components along the trivial directions.
+    trivial_errors : ndarray of shape (t,)
+        Residual |M v - mu v| / |v| of each trivial direction v: the error of its multiplier mu, and
+        an estimate of the error of the others.
     """
 
     multipliers: ComplexArray
     vectors: ComplexArray
-    known_errors: Array
+    trivial_errors: Array
 
     def exponents(self, duration: float) -> ComplexArray:
-        """Return ln multiplier / T by falling real part, without those gone to the last digit."""
+        """Return the Floquet exponents ln(multiplier) / T.
+
+        Parameters
+        ----------
+        duration : float
+            The time T of the monodromy matrix, above 0.
+
+        Returns
+        -------
+        ndarray of shape (m,)
+            The exponents by descending real part, without those of multipliers that underflow.
+        """
         kept = self.multipliers[np.abs(self.multipliers) > np.finfo(float).tiny]
         values = np.asarray(np.log(kept) / duration, dtype=np.complex128)
         return values[np.lexsort((-values.imag, -values.real))]
@@ -56,27 +67,44 @@ def floquet(monodromy: Array, directions: Array, expected: Array) -> Floquet:
     Parameters
     ----------
     monodromy : ndarray of shape (k, k)
+        The monodromy matrix.
     directions : ndarray of shape (k, t)
-        Known eigenvectors, linearly independent; t may be 0.
+        Trivial eigenvectors, linearly independent; t may be 0.
     expected : ndarray of shape (t,)
         Their multipliers.
+
+    Returns
+    -------
+    Floquet
+        The other multipliers, and the errors of the trivial ones.
     """
     t = directions.shape[1]
     others = np.linalg.qr(directions, mode="complete")[0][:, t:]
     values, vectors = np.linalg.eig(others.T @ monodromy @ others)
     order = np.argsort(-np.abs(values), kind="stable")
-    wrong = np.linalg.norm(monodromy @ directions - directions * expected, axis=0)
-    size = np.linalg.norm(directions, axis=0)
+    residuals = np.linalg.norm(monodromy @ directions - directions * expected, axis=0)
+    lengths = np.linalg.norm(directions, axis=0)
     return Floquet(
         values[order].astype(complex),
         (others @ vectors[:, order]).astype(complex),
-        # A motion that has come to rest has no direction, and nothing is known of its error.
-        np.divide(wrong, size, out=np.full_like(wrong, np.inf), where=size > 0.0),
+        # A motion that rests has no direction, and the error of its multiplier is unknown.
+        np.divide(residuals, lengths, out=np.full_like(residuals, np.inf), where=lengths > 0.0),
     )
 
 
 def floquet_of(shot: Shot) -> Floquet:
-    """Return the multipliers of an orbit among its own displacements."""
-    known = [shot.velocity, shot.turning] if shot.turning.any() else [shot.velocity]
-    directions = shot.basis.T @ np.stack(known, axis=1)
-    return floquet(shot.monodromy, directions, np.ones(len(known)))
+    """Return the multipliers of an orbit for its own displacements.
+
+    Parameters
+    ----------
+    shot : Shot
+        The motion along the orbit.
+
+    Returns
+    -------
+    Floquet
+        The multipliers; the velocity and, with a rotation, S y are trivial directions.
+    """
+    trivial = [shot.velocity, shot.turning] if shot.turning.any() else [shot.velocity]
+    directions = shot.basis.T @ np.stack(trivial, axis=1)
+    return floquet(shot.monodromy, directions, np.ones(len(trivial)))

@@ -1,8 +1,8 @@
 """The flow of a constrained system over a given time, with its exact linearisation.
 
-The time is cut into equal intervals (`undula.numerics.orbits.collocation`). Only the positions of a
-start matter. Sensitivities are exact derivatives of the discrete flow, not a discretisation of the
-derivative's equations.
+The time is divided into equal intervals (`undula.numerics.orbits.collocation`). The flow depends on
+the positions of the start only. Sensitivities are exact derivatives of the discrete flow, not a
+discretisation of the variational equations.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,7 +12,13 @@ import numpy as np
 
 from undula.arrays import Array
 from undula.numerics.continuation.problem import Equations
-from undula.numerics.orbits.collocation import Outcome, Scheme, Solved, Tangent, solve_stages
+from undula.numerics.orbits.collocation import (
+    Linearisation,
+    Outcome,
+    Scheme,
+    StageSolution,
+    solve_stages,
+)
 from undula.numerics.orbits.radau import Radau, interpolation, radau
 
 #: The derivative of a residual by a parameter, as a function of y (n,) and w (n,).
@@ -21,23 +27,23 @@ ByParameter = Callable[[Array, Array], Array]
 #: Three stages, order 5, and five stages, order 9.
 RADAU_5, RADAU_9 = radau(3), radau(5)
 
-# An interval whose stages are not found is gone through in so many parts, which are cut themselves
-# if need be, so often.
-_PARTS, _CUTS = 4, 3
+# Number of parts into which an interval is divided whose stages are not found, and number of
+# recursive divisions.
+_SUBINTERVALS, _MAX_SUBDIVISIONS = 4, 3
 
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """Derivatives of the end of a flow by what it depends on.
+    """Derivatives of the end of a flow.
 
     Attributes
     ----------
     by_start : ndarray of shape (n, k)
         By the amplitudes of k small displacements of the start.
     by_duration : ndarray of shape (n,)
-        By the duration: the velocity at the end, to the order of the positions themselves.
+        By the duration: the velocity at the end, with the order of the positions.
     by_parameters : ndarray of shape (n, q)
-        By parameters.
+        By q parameters.
     """
 
     by_start: Array
@@ -47,20 +53,20 @@ class Sensitivities:
 
 @dataclass(frozen=True)
 class Flow:
-    """The end of a flow, and the way there.
+    """The end and the stages of a flow.
 
     Attributes
     ----------
     outcome : Outcome
-        If it is not DONE the end is not a number.
+        If it is not DONE, the end is NaN.
     end : ndarray of shape (n,)
         Positions and multipliers at the end.
     stages : ndarray of shape (intervals, s, n)
         All stage values.
     steps : int
-        Steps of Newton's method in all.
+        Total number of Newton steps.
     sensitivities : Sensitivities or None
-        None if none were asked for, or the end was not reached.
+        None if they were not requested, or the end was not reached.
     """
 
     outcome: Outcome
@@ -80,27 +86,29 @@ def flow(
     guess: Array | None = None,
     method: Radau = RADAU_5,
 ) -> Flow:
-    """Follow a system from y0 over some time.
+    """Integrate a system from y0 over a given time.
 
     Parameters
     ----------
     equations : Equations
+        The differential equation.
     y0 : ndarray of shape (n,)
-        The start; its multipliers only serve as a first guess.
+        The start; its multipliers serve as a guess only.
     duration : float
-        The time, > 0.
+        The time, above 0.
     intervals : int
-        Number of equal steps.
+        Number of equal intervals, at least 1.
     columns : ndarray of shape (n, k), optional
-        Displacements of the start that the end is to be differentiated by; their multipliers do
-        not matter. Without it there are no sensitivities.
+        Displacements of the start for which the end is differentiated; their multipliers do not
+        matter. Without it no sensitivities are computed.
     parameters : sequence of functions
-        Derivatives of the residual by parameters that the end is to be differentiated by.
+        Derivatives of the residual by the parameters for which the end is differentiated.
     guess : ndarray of shape (intervals, s, n), optional
-        Stage values to begin with, such as those of a neighbouring flow. Without it each interval
-        begins with the extrapolated polynomial of the one before. Where Newton's method fails
-        from these, shorter intervals show where to begin.
+        Guess of the stage values, such as those of a neighbouring flow. By default it is the
+        extrapolated polynomial of the interval before. Where Newton's method fails from a guess,
+        a better one is computed on shorter intervals.
     method : Radau
+        The collocation method.
 
     Returns
     -------
@@ -109,20 +117,22 @@ def flow(
     """
     scheme = Scheme(equations, method, duration / intervals)
     stages = np.full((intervals, method.stages, y0.size), np.nan)
-    carried = None if columns is None else _Carried(columns, intervals, parameters)
-    y, ahead, steps = y0, np.tile(y0, (method.stages, 1)), 0
+    propagation = None if columns is None else _Propagation(columns, intervals, parameters)
+    y, extrapolated, steps = y0, np.tile(y0, (method.stages, 1)), 0
     for k in range(intervals):
-        # Newton's method notices for itself that it has lost its way.
+        # Newton's method detects its divergence by itself.
         with np.errstate(over="ignore", invalid="ignore"):
-            solved = _found(scheme, method, y, ahead if guess is None else guess[k], _CUTS)
+            solved = _solve_interval(
+                scheme, method, y, extrapolated if guess is None else guess[k], _MAX_SUBDIVISIONS
+            )
         steps += solved.steps
-        if solved.tangent is None:
+        if solved.linearisation is None:
             return Flow(solved.outcome, np.full(y0.size, np.nan), stages, steps, None)
-        if carried is not None:
-            carried.through(scheme, solved.tangent)
-        stages[k], ahead = solved.stages, scheme.extrapolate(y, solved.stages)
+        if propagation is not None:
+            propagation.propagate(scheme, solved.linearisation)
+        stages[k], extrapolated = solved.stages, scheme.extrapolate(y, solved.stages)
         y = stages[k, -1]
-    return Flow(Outcome.DONE, y, stages, steps, carried.sensitivities if carried else None)
+    return Flow(Outcome.DONE, y, stages, steps, propagation.sensitivities if propagation else None)
 
 
 def linearised_flow(
@@ -134,89 +144,116 @@ def linearised_flow(
     parameters: Sequence[ByParameter] = (),
     method: Radau = RADAU_5,
 ) -> Sensitivities | None:
-    """Linearise a flow along known stage values (intervals, s, n), without solving for any.
+    """Linearise a flow along given stage values.
 
-    The stages may be those of a motion found with other, smaller equations. Returns None where a
-    matrix is singular. For the rest see `flow`.
+    Parameters
+    ----------
+    equations, y0, duration, columns, parameters, method
+        As for `flow`.
+    stages : ndarray of shape (intervals, s, n)
+        The stage values, for example of a motion computed with smaller equations.
+
+    Returns
+    -------
+    Sensitivities or None
+        None where a matrix is singular.
     """
     scheme = Scheme(equations, method, duration / stages.shape[0])
-    carried = _Carried(columns, stages.shape[0], parameters)
+    propagation = _Propagation(columns, stages.shape[0], parameters)
     y = y0
     for values in stages:
-        tangent = Tangent.at(scheme, y, values)
-        if tangent is None:
+        linearisation = Linearisation.at(scheme, y, values)
+        if linearisation is None:
             return None
-        carried.through(scheme, tangent)
+        propagation.propagate(scheme, linearisation)
         y = values[-1]
-    return carried.sensitivities
+    return propagation.sensitivities
 
 
 def resampled(
     y0: Array, stages: Array, intervals: int, differential: Array, method: Radau = RADAU_5
 ) -> Array:
-    """Return stage values (intervals, s, n) on other intervals, from the stage polynomials.
+    """Return the stage values of a flow on another number of intervals, by interpolation.
 
-    Multipliers (where `differential` (n,) is False) have no value at the start of an interval:
-    their polynomial goes through the stages alone.
+    Parameters
+    ----------
+    y0 : ndarray of shape (n,)
+        The start.
+    stages : ndarray of shape (m, s, n)
+        Stage values on m intervals.
+    intervals : int
+        The new number of intervals.
+    differential : ndarray of bool, shape (n,)
+        False for multipliers, which have no value at the start of an interval: their polynomial
+        interpolates the stages only.
+    method : Radau
+        The collocation method.
+
+    Returns
+    -------
+    ndarray of shape (intervals, s, n)
+        The interpolated stage values.
     """
     times = method.times(intervals).ravel() * stages.shape[0]
-    # A time between two intervals is the end of the first.
-    place = np.clip(np.ceil(times).astype(int) - 1, 0, stages.shape[0] - 1)
+    # A common end of two intervals belongs to the first.
+    interval = np.clip(np.ceil(times).astype(int) - 1, 0, stages.shape[0] - 1)
     starts = np.concatenate([y0[None], stages[:-1, -1]])
     whole = np.concatenate([starts[:, None], stages], axis=1)
 
     def along(grid: Array, values: Array) -> Array:
         return np.asarray(
-            np.einsum("tj,tjn->tn", interpolation(grid, times - place), values[place])
+            np.einsum("tj,tjn->tn", interpolation(grid, times - interval), values[interval])
         )
 
-    found = np.where(differential, along(method.grid, whole), along(method.nodes, stages))
-    return found.reshape(intervals, *stages.shape[1:])
+    values_at_nodes = np.where(differential, along(method.grid, whole), along(method.nodes, stages))
+    return values_at_nodes.reshape(intervals, *stages.shape[1:])
 
 
-def _found(scheme: Scheme, method: Radau, y: Array, guess: Array, cuts: int) -> Solved:
-    """Return the stages of an interval, found from those of shorter ones if the guess fails."""
+def _solve_interval(
+    scheme: Scheme, method: Radau, y: Array, guess: Array, subdivisions: int
+) -> StageSolution:
+    """Solve for the stages of an interval, on shorter intervals first if the guess fails."""
     solved = solve_stages(scheme, y, guess)
-    if solved.outcome is Outcome.DONE or cuts == 0:
+    if solved.outcome is Outcome.DONE or subdivisions == 0:
         return solved
-    shorter = Scheme(scheme.equations, method, scheme.h / _PARTS)
-    stages, start, ahead = [], y, np.tile(y, (method.stages, 1))
-    for _ in range(_PARTS):
-        part = _found(shorter, method, start, ahead, cuts - 1)
+    shorter = Scheme(scheme.equations, method, scheme.h / _SUBINTERVALS)
+    stages, start, extrapolated = [], y, np.tile(y, (method.stages, 1))
+    for _ in range(_SUBINTERVALS):
+        part = _solve_interval(shorter, method, start, extrapolated, subdivisions - 1)
         if part.outcome is not Outcome.DONE:
             return solved
         stages.append(part.stages)
-        start, ahead = part.stages[-1], shorter.extrapolate(start, part.stages)
-    better = resampled(y, np.stack(stages), 1, scheme.moving, method)[0]
-    return solve_stages(scheme, y, better)
+        start, extrapolated = part.stages[-1], shorter.extrapolate(start, part.stages)
+    refined_guess = resampled(y, np.stack(stages), 1, scheme.moving, method)[0]
+    return solve_stages(scheme, y, refined_guess)
 
 
-class _Carried:
-    """Changes of the state so far: by the displacements of the start, duration, parameters."""
+class _Propagation:
+    """Changes of the state by displacements of the start, by duration and by parameters."""
 
     def __init__(self, columns: Array, intervals: int, parameters: Sequence[ByParameter]) -> None:
         self._starts, self._intervals, self._parameters = columns.shape[1], intervals, parameters
         self._changes = np.zeros((self._starts + 1 + len(parameters), columns.shape[0]))
         self._changes[: self._starts] = columns.T
 
-    def through(self, scheme: Scheme, tangent: Tangent) -> None:
-        """Carry the changes through an interval."""
-        stages, velocities = tangent.stages, tangent.velocities
-        (s, n), half = stages.shape, tangent.drag.shape[2] // 2
+    def propagate(self, scheme: Scheme, linearisation: Linearisation) -> None:
+        """Propagate the changes through an interval."""
+        stages, velocities = linearisation.stages, linearisation.velocities
+        (s, n), half = stages.shape, linearisation.drag.shape[2] // 2
         right = np.zeros((self._changes.shape[0], n, s))
         moving = np.where(scheme.moving, self._changes, 0.0)
-        # A longer duration makes all velocities smaller by the same part.
-        slower = velocities / (scheme.h * self._intervals)
+        # A longer duration reduces all velocities by the same factor.
+        velocity_change = velocities / (scheme.h * self._intervals)
         for offset in range(-half, half + 1):
             rows = slice(max(0, -offset), n - max(0, offset))
             others = slice(max(0, offset), n + min(0, offset))
-            drag = tangent.drag[:, rows, half + offset]
+            drag = linearisation.drag[:, rows, half + offset]
             right[:, rows] -= moving[:, others, None] * (scheme.rates[:, :1] * drag).T
-            right[self._starts, rows] += (drag * slower[:, others]).T
+            right[self._starts, rows] += (drag * velocity_change[:, others]).T
         for j, by_parameter in enumerate(self._parameters, self._starts + 1):
             for i in range(s):
                 right[j, :, i] -= by_parameter(stages[i], velocities[i])
-        self._changes = tangent.solve(right)[:, :, -1]
+        self._changes = linearisation.solve(right)[:, :, -1]
 
     @property
     def sensitivities(self) -> Sensitivities:

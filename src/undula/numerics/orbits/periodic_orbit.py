@@ -1,16 +1,17 @@
-"""Periodic orbits, also up to a symmetry, by single shooting.
+"""Periodic orbits, exact or up to a symmetry, by single shooting.
 
 An orbit u = (x, T[, angle]) with the symmetry Q (`undula.numerics.orbits.symmetry`) solves
 
     Q x(T) - x = 0,    <v_ref, x - x_ref> = 0,    <S x_ref, x - x_ref> = 0.
 
-The last two choose one point of the orbit, and one orbit of those that differ by a rotation, with
-the velocity v_ref at a reference x_ref, such as an orbit found before.
+The last two are phase conditions, with the velocity v_ref at a reference x_ref, such as an orbit
+computed before. They select one point of the orbit, and one of the orbits that differ by a
+rotation.
 
-The flow starts from where x satisfies the constraints (`undula.numerics.orbits.shooting`) and is
-linearised along the displacements B that they allow there: the derivative of Q x(T) - x is taken as
-Q M B' - 1 with M the sensitivities (n, k). What that leaves out is of the order of the violation by
-x, which is that of the square of Newton's last step: the method stays quadratic.
+The flow starts from the projection of x onto the constraints (`undula.numerics.orbits.shooting`)
+and is linearised for the displacements B that they allow there: the derivative of Q x(T) - x is
+taken as Q M B' - 1, with the sensitivities M (n, k). The neglected terms are of the order of the
+constraint violation of x, which is the square of Newton's last step: convergence stays quadratic.
 
 Source: Keller (1968), Numerical Methods for Two-Point Boundary-Value Problems; for the phase
 conditions Doedel, Keller & Kernevez (1991), Int. J. Bifurcation Chaos 1, 745.
@@ -29,28 +30,28 @@ from undula.numerics.orbits.collocation import Outcome
 from undula.numerics.orbits.flow import resampled
 from undula.numerics.orbits.shooting import Shooting, Shot
 
-# What moves less than this part of its size in the course of an orbit is an equilibrium: near one,
-# the residual is the square of the distance, so that it is met to the root of round-off.
-_AT_REST = 1e-7
+# Relative extent below which an orbit is an equilibrium. Near an equilibrium the residual is the
+# square of the distance, so that it is approached to the root of round-off.
+_REST_TOLERANCE = 1e-7
 
 
 @dataclass
 class LastShot:
-    """The last shot that succeeded; its stages are where the next one begins."""
+    """The last shot that succeeded, whose stages are the guess of the next shot."""
 
     shot: Shot | None = None
 
 
 @dataclass(frozen=True)
 class Reference:
-    """What the phase conditions refer to.
+    """The reference of the phase conditions.
 
     Attributes
     ----------
     x, velocity, turning : ndarray of shape (k,)
         Positions at the start of a motion near the orbit, their velocity, and S x.
     duration : float
-        Its time T, > 0.
+        Its time T, above 0.
     """
 
     x: Array
@@ -69,12 +70,14 @@ class Reference:
 class OrbitProblem:
     """Equations of an orbit: a `continuation.problem.Problem` in u = (x, T[, angle]).
 
-    Its residual is not a number where there is no flow.
+    Its residual is NaN where the flow fails.
 
     Attributes
     ----------
     shooting : Shooting
+        Settings of the flow.
     reference : Reference
+        Reference of the phase conditions.
     last : LastShot
         Changed by each evaluation.
     """
@@ -85,32 +88,32 @@ class OrbitProblem:
 
     @property
     def weights(self) -> Array:
-        """Weights (m,) for the mean square of positions, parts of the reference's T, radians."""
+        """Weights (m,) for the mean square of positions, T in units of the reference's, radians."""
         count = self.reference.x.size
-        last = [self.reference.duration**-2] + [1.0] * self.shooting.turns
+        last = [self.reference.duration**-2] + [1.0] * self.shooting.has_rotation
         return np.append(np.full(count, 1.0 / count), last)
 
     def shoot(self, u: Array, p: float) -> Shot | Outcome:
-        """Return the shot of u (m,), begun from the stages of the last one that succeeded."""
+        """Return the shot of u (m,), with the stages of the last successful shot as guess."""
         last = self.last.shot
         shot = self.shooting.shoot(u, p, None if last is None else last.flow.stages)
         if isinstance(shot, Shot):
             self.last.shot = shot
         return shot
 
-    def referred_to(self, u: Array) -> Self:
-        """Return the problem with the solution u (m,) as reference, which it was evaluated near."""
+    def with_reference(self, u: Array) -> Self:
+        """Return the problem with the solution u (m,), near its last evaluation, as reference."""
         last = self.last.shot
         reference = self.reference if last is None else Reference.of(last)
-        x, duration, _ = self.shooting.parted(u)
+        x, duration, _ = self.shooting.split(u)
         return replace(self, reference=replace(reference, x=x, duration=duration))
 
     def evaluate(self, u: Array, p: float) -> Evaluation:
         """Return residual and derivatives at u (m,) and a parameter."""
         shot = self.shoot(u, p)
         if isinstance(shot, Outcome):
-            nothing = np.full(u.size, np.nan)
-            return Evaluation(nothing, DenseLinear(np.full((u.size, u.size), np.nan)), nothing)
+            undefined = np.full(u.size, np.nan)
+            return Evaluation(undefined, DenseLinear(np.full((u.size, u.size), np.nan)), undefined)
         moving, count = shot.moving, self.reference.x.size
         rows = self._phase_rows()
         residual, by_parameter, matrix = np.zeros(u.size), np.zeros(u.size), np.zeros((u.size,) * 2)
@@ -119,23 +122,23 @@ class OrbitProblem:
         by_parameter[:count] = shot.by_parameter[moving]
         matrix[:count, :count] = shot.returned[moving] @ shot.basis[moving].T - np.eye(count)
         matrix[:count, count] = shot.velocity[moving]
-        if self.shooting.turns:
+        if self.shooting.has_rotation:
             matrix[:count, count + 1] = shot.by_angle[moving]
         matrix[count:, :count] = rows
         return Evaluation(residual, DenseLinear(matrix), by_parameter)
 
     def _phase_rows(self) -> Array:
-        """Return the directions that a start must not differ from the reference in, each unit.
+        """Return the unit directions in which the start must not differ from the reference.
 
-        One that vanishes fixes nothing, which leaves the linearised problem singular.
+        A direction that vanishes leaves the linearised problem singular.
         """
-        rows = [self.reference.velocity] + [self.reference.turning] * self.shooting.turns
+        rows = [self.reference.velocity] + [self.reference.turning] * self.shooting.has_rotation
         return np.stack([row / (np.linalg.norm(row) or 1.0) for row in rows])
 
 
 @dataclass(frozen=True)
 class Orbit:
-    """A periodic orbit, perhaps up to a symmetry.
+    """A periodic orbit, exact or up to a symmetry.
 
     Attributes
     ----------
@@ -146,7 +149,7 @@ class Orbit:
     shot : Shot
         The motion along it, with its linearisation.
     problem : OrbitProblem
-        Its equations with itself as reference, to go on from.
+        Its equations with itself as reference, for continuation.
     """
 
     u: Array
@@ -162,11 +165,11 @@ class Search:
     Attributes
     ----------
     orbit : Orbit or None
-        What was found.
+        The orbit; None if the search failed.
     advice : str
-        What happened and, if no orbit was found, what to do, in one sentence.
+        Outcome and, for a failure, the cure, in one sentence.
     solution : Solution or None
-        How Newton's method went; None if it could not begin.
+        Result of Newton's method; None if it could not begin.
     """
 
     orbit: Orbit | None
@@ -185,8 +188,9 @@ def find_orbit(
     Parameters
     ----------
     shooting : Shooting
+        Settings of the flow.
     u : ndarray of shape (m,)
-        Guess of the positions at the start, the time T, and the angle where there is a rotation.
+        Guess of the positions at the start, the time T, and the angle with a rotation.
     p : float
         The parameter.
     stages : ndarray of shape (intervals, s, n), optional
@@ -213,13 +217,28 @@ def find_orbit(
 
 
 def orbit_at(problem: OrbitProblem, u: Array, p: float) -> Orbit | None:
-    """Return the orbit that a solution u (m,) of its problem is; None where there is no flow."""
+    """Return the orbit of a solution.
+
+    Parameters
+    ----------
+    problem : OrbitProblem
+        Its equations.
+    u : ndarray of shape (m,)
+        The solution.
+    p : float
+        The parameter.
+
+    Returns
+    -------
+    Orbit or None
+        None if the flow fails.
+    """
     shot = problem.shoot(u, p)
-    return Orbit(u, p, shot, problem.referred_to(u)) if isinstance(shot, Shot) else None
+    return Orbit(u, p, shot, problem.with_reference(u)) if isinstance(shot, Shot) else None
 
 
 def with_shorter_steps(orbit: Orbit) -> Orbit | None:
-    """Return the same orbit with half as many intervals again, None if that is not found."""
+    """Return the same orbit with 1.5 times as many intervals; None if the search fails."""
     shooting, shot = orbit.problem.shooting, orbit.shot
     finer = replace(shooting, intervals=math.ceil(1.5 * shooting.intervals))
     stages = resampled(shot.y, shot.flow.stages, finer.intervals, shot.moving, shooting.method)
@@ -227,10 +246,10 @@ def with_shorter_steps(orbit: Orbit) -> Orbit | None:
 
 
 def time_error(orbit: Orbit) -> float:
-    """Return the error of T, from the same orbit with shorter steps; NaN if that is not found."""
-    found = with_shorter_steps(orbit)
-    return math.nan if found is None else abs(found.shot.duration - orbit.shot.duration)
+    """Return the error of T, from the same orbit on shorter intervals; NaN if that search fails."""
+    finer_orbit = with_shorter_steps(orbit)
+    return math.nan if finer_orbit is None else abs(finer_orbit.shot.duration - orbit.shot.duration)
 
 
 def _moves(shot: Shot) -> bool:
-    return shot.extent > _AT_REST * float(np.abs(shot.y[shot.moving]).max())
+    return shot.extent > _REST_TOLERANCE * float(np.abs(shot.y[shot.moving]).max())

@@ -1,7 +1,7 @@
 """Coefficients of the collocation methods Radau IIA.
 
-On a step of length h from t the solution is taken as the polynomial of degree s through the value
-Y_0 at t and values Y_1, ..., Y_s at t + c_i h, and has to satisfy the equations at these. With its
+On a step of length h from t the solution is the polynomial of degree s through the value Y_0 at t
+and values Y_1, ..., Y_s at t + c_i h, which satisfies the equations at these times. With its
 derivatives
 
     h Y'(t + c_i h) = sum_{j=0..s} D_ij Y_j,    i = 1, ..., s,
@@ -27,12 +27,12 @@ from undula.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Radau:
-    """A method as a table.
+    """Table of a method.
 
     Attributes
     ----------
     nodes : ndarray of shape (s,)
-        Nodes c, rising, the last one 1.
+        Nodes c, ascending, the last one 1.
     differentiation : ndarray of shape (s, s + 1)
         The matrix D.
     """
@@ -56,13 +56,24 @@ class Radau:
         return np.append(0.0, self.nodes)
 
     def times(self, intervals: int) -> Array:
-        """Return the times of all stages as parts of the whole, shape (intervals, s)."""
+        """Return the times (intervals, s) of all stages as fractions of the whole time."""
         return np.asarray((np.arange(intervals)[:, None] + self.nodes) / intervals)
 
 
 @cache
 def radau(stages: int) -> Radau:
-    """Return the method with this number of stages, at least 1."""
+    """Return the method of order 2 s - 1.
+
+    Parameters
+    ----------
+    stages : int
+        Number of stages s, at least 1.
+
+    Returns
+    -------
+    Radau
+        Its table.
+    """
     difference = Legendre.basis(stages, domain=[0.0, 1.0]) - Legendre.basis(
         stages - 1, domain=[0.0, 1.0]
     )
@@ -73,7 +84,20 @@ def radau(stages: int) -> Radau:
 
 
 def interpolation(grid: Array, points: Array) -> Array:
-    """Return the matrix (m, k) from values on a grid (k,) to those of its polynomial at points."""
+    """Return the matrix that evaluates the interpolating polynomial of values on a grid.
+
+    Parameters
+    ----------
+    grid : ndarray of shape (k,)
+        Different points at which values are given.
+    points : ndarray of shape (m,)
+        Points at which the polynomial is evaluated.
+
+    Returns
+    -------
+    ndarray of shape (m, k)
+        The matrix.
+    """
     others = ~np.eye(grid.size, dtype=bool)
     columns = [
         np.prod((points[:, None] - grid[rest]) / (grid[j] - grid[rest]), axis=1)
@@ -83,10 +107,10 @@ def interpolation(grid: Array, points: Array) -> Array:
 
 
 def _derivatives(grid: Array) -> Array:
-    """Return the matrix (k, k) from values on a grid to the derivatives of its polynomial there."""
-    apart = grid[:, None] - grid + np.eye(grid.size)
-    product = np.prod(apart, axis=1)
-    matrix = product[:, None] / product / apart
+    """Return the differentiation matrix (k, k) of the interpolating polynomial on a grid (k,)."""
+    differences = grid[:, None] - grid + np.eye(grid.size)
+    product = np.prod(differences, axis=1)
+    matrix = product[:, None] / product / differences
     np.fill_diagonal(matrix, 0.0)
     # The derivative of a constant is zero.
     np.fill_diagonal(matrix, -matrix.sum(axis=1))

@@ -1,9 +1,9 @@
-"""A flow from where an orbit may start, brought back by its symmetry, with its linearisation.
+"""Shooting: a flow from the start of an orbit, mapped back by its symmetry, with linearisation.
 
-Where an orbit starts and how long it takes is one vector, u = (x, T[, angle]): positions, the time
-after which the motion repeats itself up to a symmetry, and the angle by which it has turned then,
-where the symmetry contains a rotation. A flow starts from positions that satisfy the constraints,
-next to x: then none of it depends on displacements of x that leave them, to first order.
+The unknowns of an orbit are one vector, u = (x, T[, angle]): positions at the start, the time after
+which the motion repeats itself up to a symmetry, and the angle of its rotation in that time, where
+the symmetry contains a rotation. The flow starts from positions next to x that satisfy the
+constraints: to first order it does not depend on displacements of x that violate them.
 """
 
 from collections.abc import Callable
@@ -20,39 +20,42 @@ from undula.numerics.orbits.flow import RADAU_5, ByParameter, Flow, flow
 from undula.numerics.orbits.radau import Radau
 from undula.numerics.orbits.symmetry import OrbitSymmetry
 
-# Newton's method for the constraints ends after a step that leaves round-off; none takes so many.
-_SMALL_STEP, _MOST_STEPS = 1e-9, 10
-# A central difference by the parameter loses the square of this part of it, and round-off over it.
-_PART = float(np.finfo(float).eps ** (1.0 / 3.0))
+# Newton's method for the constraints: relative step that leaves only round-off, and a number of
+# steps that is never reached.
+_STEP_TOLERANCE, _MAX_STEPS = 1e-9, 10
+# Relative change of the parameter in a central difference: its truncation error is the square of
+# this, its round-off error that of the residual over this.
+_RELATIVE_DIFFERENCE = float(np.finfo(float).eps ** (1.0 / 3.0))
 
 
 @dataclass(frozen=True)
 class Shot:
-    """A flow from where an orbit may start.
+    """A flow from a start, mapped back by the symmetry Q of the orbit.
 
     Attributes
     ----------
     y : ndarray of shape (n,)
         The start, which satisfies the constraints; its multipliers are 0.
     moving : ndarray of bool, shape (n,)
-        Where positions are.
+        True for positions.
     duration, angle : float
-        The time T, and the angle by which the motion has turned, 0 without a rotation.
+        The time T, and the angle of rotation [rad], 0 without a rotation.
     flow : Flow
+        The flow over T.
     basis : ndarray of shape (n, k)
         Orthonormal displacements B of the start that the constraints allow.
     end : ndarray of shape (n,)
-        The end brought back, Q y(T).
+        The end Q y(T).
     returned : ndarray of shape (n, k)
-        What the displacements have become, brought back: Q M.
+        The displacements at the end, Q M.
     velocity : ndarray of shape (n,)
-        The velocity at the end, brought back.
+        The velocity at the end, mapped by Q.
     turning : ndarray of shape (n,)
-        S y, the velocity of a unit rate of turning at the start; 0 without a rotation.
+        S y, the velocity of a unit rate of rotation at the start; 0 without a rotation.
     by_parameter : ndarray of shape (n,)
-        The derivative of the end by the parameter, brought back.
+        The derivative of Q y(T) by the parameter.
     by_angle : ndarray of shape (n,)
-        The derivative of the end, brought back, by the angle; 0 without a rotation.
+        The derivative of Q y(T) by the angle; 0 without a rotation.
     """
 
     y: Array
@@ -70,49 +73,62 @@ class Shot:
 
     @property
     def monodromy(self) -> Array:
-        """What becomes of displacements in the basis: B' Q M, shape (k, k)."""
+        """The monodromy matrix in the basis, B' Q M, shape (k, k)."""
         return np.asarray(self.basis.T @ self.returned)
 
     @property
     def extent(self) -> float:
-        """The largest change of a position in the course of the flow."""
-        away = np.abs(self.flow.stages - self.y)
-        return float(away[:, :, self.moving].max())
+        """The largest change of a position along the flow."""
+        distance = np.abs(self.flow.stages - self.y)
+        return float(distance[:, :, self.moving].max())
 
 
 @dataclass(frozen=True)
 class Shooting:
-    """How to shoot.
+    """Settings of shooting.
 
     Attributes
     ----------
     equations_at : function of a parameter
         Returns the equations; their unknowns have the same layout at all parameters.
-    closure : Closure
-        The symmetry that brings the end back.
+    symmetry : OrbitSymmetry
+        The symmetry Q that maps the end back to the start.
     intervals : int
-        Equal steps that T is cut into.
+        Number of equal intervals of T.
     method : Radau
+        The collocation method.
     """
 
     equations_at: Callable[[float], Equations]
-    closure: OrbitSymmetry
+    symmetry: OrbitSymmetry
     intervals: int
     method: Radau = RADAU_5
 
     @property
-    def turns(self) -> bool:
-        """Whether the angle is among the unknowns."""
-        return self.closure.rotation is not None
+    def has_rotation(self) -> bool:
+        """True if the angle is among the unknowns."""
+        return self.symmetry.rotation is not None
 
     def shoot(self, u: Array, p: float, guess: Array | None = None) -> Shot | Outcome:
-        """Return the shot of u = (x, T[, angle]) at a parameter; how the flow failed if it did.
+        """Compute the flow of u at a parameter.
 
-        Stage values (intervals, s, n) of a neighbouring flow can be given as a first guess.
+        Parameters
+        ----------
+        u : ndarray of shape (m,)
+            (x, T[, angle]), with T above 0.
+        p : float
+            The parameter.
+        guess : ndarray of shape (intervals, s, n), optional
+            Stage values of a neighbouring flow.
+
+        Returns
+        -------
+        Shot or Outcome
+            The reason of the failure if the end was not reached.
         """
         equations = self.equations_at(p)
         moving = np.asarray(equations.differential, dtype=bool)
-        x, duration, angle = self.parted(u)
+        x, duration, angle = self.split(u)
         if not (np.isfinite(u).all() and duration > 0.0):
             return Outcome.NOT_FINITE
         y = np.zeros(moving.size)
@@ -120,48 +136,60 @@ class Shooting:
         y = admissible(equations, y)
         basis = equations.displacements(y)
         parameters = [_difference(self.equations_at, p)]
-        came = flow(equations, y, duration, self.intervals, basis, parameters, guess, self.method)
-        change, closure = came.sensitivities, self.closure
-        if change is None:
-            return came.outcome
+        motion = flow(equations, y, duration, self.intervals, basis, parameters, guess, self.method)
+        sensitivities, symmetry = motion.sensitivities, self.symmetry
+        if sensitivities is None:
+            return motion.outcome
         return Shot(
             y=y,
             moving=moving,
             duration=duration,
             angle=angle,
-            flow=came,
+            flow=motion,
             basis=basis,
-            end=closure.apply(came.end, angle),
-            returned=closure.apply(change.by_start, angle),
-            velocity=closure.apply(change.by_duration, angle),
-            turning=closure.turning(y),
-            by_parameter=closure.apply(change.by_parameters[:, 0], angle),
-            by_angle=closure.by_angle(came.end, angle),
+            end=symmetry.apply(motion.end, angle),
+            returned=symmetry.apply(sensitivities.by_start, angle),
+            velocity=symmetry.apply(sensitivities.by_duration, angle),
+            turning=symmetry.turning(y),
+            by_parameter=symmetry.apply(sensitivities.by_parameters[:, 0], angle),
+            by_angle=symmetry.by_angle(motion.end, angle),
         )
 
-    def parted(self, u: Array) -> tuple[Array, float, float]:
+    def split(self, u: Array) -> tuple[Array, float, float]:
         """Return positions, duration and angle of u."""
-        if self.turns:
+        if self.has_rotation:
             return u[:-2], float(u[-2]), float(u[-1])
         return u[:-1], float(u[-1]), 0.0
 
 
 def admissible(equations: Equations, y: Array) -> Array:
-    """Return y (n,) with its positions moved, by about the least, to satisfy their constraints.
+    """Return y with its positions projected onto their constraints.
 
-    Constraints that involve multipliers are satisfied by these.
+    Constraints that involve multipliers are left out, as the multipliers satisfy them.
+
+    Parameters
+    ----------
+    equations : Equations
+        The differential equation.
+    y : ndarray of shape (n,)
+        Positions near the constraints.
+
+    Returns
+    -------
+    ndarray of shape (n,)
+        The projection, by Gauss-Newton steps.
     """
-    moving, still = np.asarray(equations.differential, dtype=bool), np.zeros(y.size)
-    for _ in range(_MOST_STEPS):
-        violation = equations.residual(y, still)[~moving]
-        slopes = to_dense(equations.parts(y, still, 0.0)[0])[~moving]
+    moving, at_rest = np.asarray(equations.differential, dtype=bool), np.zeros(y.size)
+    for _ in range(_MAX_STEPS):
+        violation = equations.residual(y, at_rest)[~moving]
+        slopes = to_dense(equations.parts(y, at_rest, 0.0)[0])[~moving]
         alone = ~slopes[:, ~moving].any(axis=1)
         if not (alone.any() and np.isfinite(violation).all() and np.isfinite(slopes).all()):
             return y
         step = np.linalg.lstsq(slopes[alone][:, moving], -violation[alone])[0]
         y = y.copy()
         y[moving] += step
-        if np.abs(step).max() <= _SMALL_STEP * np.abs(y[moving]).max():
+        if np.abs(step).max() <= _STEP_TOLERANCE * np.abs(y[moving]).max():
             return y
     return y
 
@@ -169,10 +197,12 @@ def admissible(equations: Equations, y: Array) -> Array:
 def _difference(equations_at: Callable[[float], Equations], p: float) -> ByParameter:
     """Return the derivative of the residual by the parameter, by a central difference.
 
-    At an end of the parameter's range the difference is one-sided, and good to fewer digits.
+    At an end of the parameter's range the difference is one-sided, and less accurate.
     """
-    delta = _PART * (abs(p) or 1.0)
-    (less, low), (more, high) = (_beside(equations_at, p, side * delta) for side in (-1.0, 1.0))
+    delta = _RELATIVE_DIFFERENCE * (abs(p) or 1.0)
+    (less, low), (more, high) = (
+        _equations_near(equations_at, p, side * delta) for side in (-1.0, 1.0)
+    )
 
     def by_parameter(y: Array, w: Array) -> Array:
         return (more.residual(y, w) - less.residual(y, w)) / (high - low)
@@ -180,11 +210,11 @@ def _difference(equations_at: Callable[[float], Equations], p: float) -> ByParam
     return by_parameter
 
 
-def _beside(
-    equations_at: Callable[[float], Equations], p: float, away: float
+def _equations_near(
+    equations_at: Callable[[float], Equations], p: float, distance: float
 ) -> tuple[Equations, float]:
-    """Return the equations beside a parameter, or at it if they are not defined there."""
+    """Return the equations next to a parameter, or at it if they are undefined there."""
     try:
-        return equations_at(p + away), p + away
+        return equations_at(p + distance), p + distance
     except InputError:
         return equations_at(p), p

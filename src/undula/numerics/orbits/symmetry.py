@@ -1,11 +1,11 @@
-"""How the end of a motion is brought back to its start: the symmetry of a (relative) orbit.
+"""The symmetry of a (relative) periodic orbit, which maps its end back to its start.
 
 A motion repeats itself up to a symmetry if, after a time T,
 
-    Q x(T) = x(0),    Q y = fixed(rotate(y, -angle)),
+    Q x(T) = x(0),    Q y = map(rotate(y, -angle)),
 
-with a linear map that is known, such as a reflection after half a period, and perhaps a rotation by
-an unknown angle, by which the motion has turned during T.
+with a given linear map, such as a reflection after half a period, and, optionally, the rotation by
+an unknown angle that the motion makes in the time T.
 """
 
 from collections.abc import Callable
@@ -18,14 +18,14 @@ from undula.arrays import Array
 
 @dataclass(frozen=True)
 class Rotation:
-    """A continuous symmetry.
+    """A rotational symmetry.
 
     Attributes
     ----------
     rotate : function of y (n,) and an angle [rad]
-        Returns y turned by the angle, shape (n,).
+        Returns y rotated by the angle, shape (n,).
     generator : function of y (n,)
-        Returns S y, the derivative of y turned by an angle, at angle 0.
+        Returns S y, the derivative of the rotated y by the angle, at angle 0.
     """
 
     rotate: Callable[[Array, float], Array]
@@ -33,20 +33,20 @@ class Rotation:
 
 
 def same(y: Array) -> Array:
-    """Return y itself: a motion that repeats itself exactly."""
+    """Return y itself, the map of a motion that repeats itself exactly."""
     return y
 
 
 @dataclass(frozen=True)
 class OrbitSymmetry:
-    """The symmetry that brings the end of a motion back to its start.
+    """The symmetry that maps the end of a motion back to its start.
 
     Attributes
     ----------
-    fixed : function of y (n,)
-        A linear map that is known and commutes with the flow, and with the rotation.
+    map : function of y (n,)
+        A linear map that commutes with the flow and with the rotation.
     rotation : Rotation or None
-        A rotation by an unknown angle; None if there is none.
+        The rotation by an unknown angle; None without a rotation.
     """
 
     map: Callable[[Array], Array] = same
@@ -61,7 +61,7 @@ class OrbitSymmetry:
         return self.map(turned)
 
     def turning(self, y: Array) -> Array:
-        """Return S y (n,), the velocity of a unit rate of turning; 0 without a rotation."""
+        """Return S y (n,), the velocity of a unit rate of rotation; 0 without a rotation."""
         return np.zeros(y.size) if self.rotation is None else self.rotation.generator(y)
 
     def by_angle(self, y: Array, angle: float) -> Array:
