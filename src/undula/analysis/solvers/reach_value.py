@@ -77,7 +77,7 @@ class Reached:
 def steps_along(
     problem: Any, start: Point, steps: Steps, ends: tuple[float, float]
 ) -> Iterator[BranchStep]:
-    """Yield the steps of a branch from a point on; arguments are those of `arclength.follow`."""
+    """Yield the steps of a branch from a point on; arguments are those of `arclength.trace`."""
     before = start
     for after in trace(problem, start, steps, ends):
         yield BranchStep(problem, before, after)
