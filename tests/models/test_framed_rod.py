@@ -40,7 +40,7 @@ class Framed(Filament):
     """A filament that is computed with directors whether it needs them or not."""
 
     @property
-    def framed(self) -> bool:
+    def material_frame(self) -> bool:
         return True
 
 

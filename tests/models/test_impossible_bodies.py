@@ -49,7 +49,7 @@ def test_a_curvature_that_folds_a_joint_is_refused_with_enough_segments(curvatur
     assert "beyond pi" in told
     enough = int(told.split("use ")[1].split()[0])
     # It is what it says, to the last segment.
-    assert curved(enough, curvature).framed
+    assert curved(enough, curvature).material_frame
     assert "beyond pi" in complaint(lambda: curved(enough - 1, curvature))
 
 
