@@ -169,10 +169,10 @@ def test_another_force_does_not_call_the_function_again() -> None:
 
     model = Filament(12, ProfileLoad(75.0, density))
     known = len(calls)
-    head = model.with_(force=150.0).system.head
+    head = model.with_(force=150.0).system.outer_force
     assert len(calls) == known
     # A power of two scales without rounding.
-    np.testing.assert_array_equal(head, 2.0 * model.system.head)
+    np.testing.assert_array_equal(head, 2.0 * model.system.outer_force)
 
 
 def test_another_density_or_other_kinks_are_resolved_anew() -> None:
