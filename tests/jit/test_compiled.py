@@ -116,7 +116,7 @@ def test_the_digest_does_not_depend_on_files_that_are_no_sources(
 
 def test_functions_and_records_of_other_packages_are_not_kept() -> None:
     # Nothing here would notice that they change.
-    assert not isinstance(cache.keep(numba.njit(shutil.copytree))._cache, cache.KernelCache)
+    assert not isinstance(cache.keep_on_disk(numba.njit(shutil.copytree))._cache, cache.KernelCache)
     own, foreign = (numba.typeof(record(1.0, 2)) for record in (Point, Foreign))
     assert cache._all_ours((numba.float64, own))
     assert not cache._all_ours((numba.float64, foreign))
