@@ -1,8 +1,8 @@
 """The equations of a model, as solvers of states and the integrator use them.
 
-Positions and multipliers form one vector y (n,). Their order in it belongs to the model: solvers
-use the masks and the maps of this contract and never a stride of their own. So a model may be one
-rod, several, or rods with other unknowns besides.
+Positions and multipliers form one vector y (n,). Their order in it is the model's: solvers use the
+masks and maps of this protocol only. A model may therefore be one rod, several rods, or rods with
+other unknowns.
 """
 
 from typing import Any, ClassVar, Protocol
@@ -16,8 +16,8 @@ class System(Protocol):
 
     The equations are generic functions registered for its type, see
     `undula.numerics.integration.system`. Each type registers `residual` and `matrix`, and `rates`
-    and `size` unless their defaults hold; a type with a rotation about the axis also registers
-    `generator` and `rotate`.
+    and `error_norm` unless their defaults hold; a type with a rotation about the axis also
+    registers `generator` and `rotate`.
     """
 
     half_bandwidth: ClassVar[int]
@@ -38,11 +38,12 @@ class ModelEquations(Equations, Protocol):
         """
 
     def turning(self, y: Array) -> tuple[Array, Array]:
-        """Return the velocity of a unit rate of turning about the axis, and its drag.
+        """Return the velocity of a unit rate of rotation about the axis, and its drag.
 
         Parameters
         ----------
         y : ndarray of shape (n,)
+            Positions and multipliers.
 
         Returns
         -------
@@ -51,17 +52,19 @@ class ModelEquations(Equations, Protocol):
         """
 
     def rotated(self, y: Array, angle: float) -> Array:
-        """Return a vector turned about the axis.
+        """Return a vector rotated about the axis.
 
         Parameters
         ----------
         y : ndarray of shape (n,)
+            Positions and multipliers.
         angle : float
-            From x to y [rad].
+            Angle from x to y [rad].
 
         Returns
         -------
         ndarray of shape (n,)
+            The rotated vector.
         """
 
     def mirrored(self, y: Array) -> Array:
@@ -79,9 +82,10 @@ class ModelEquations(Equations, Protocol):
         Parameters
         ----------
         y : ndarray of shape (..., m)
-            In the unknowns of the confined model.
+            Vectors of the confined model.
 
         Returns
         -------
         ndarray of shape (..., n)
+            Vectors of this model, in the x-z plane.
         """

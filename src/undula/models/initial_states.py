@@ -72,9 +72,7 @@ def kicked(model: Model, amplitude: float = 1e-2, *, seed: int = 1) -> State:
     Examples
     --------
     >>> import undula as un
-    >>> model = un.Filament(20, un.TipLoad(75.0))
-    >>> x = un.kicked(model, 1e-3, seed=7)
-    >>> x.shape
+    >>> un.kicked(un.Filament(20, un.TipLoad(75.0)), 1e-3, seed=7).shape
     (60,)
     """
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
@@ -148,8 +146,7 @@ def helix(model: Model, amplitude: float = 1e-2, *, right_handed: bool = True) -
     Examples
     --------
     >>> import undula as un
-    >>> model = un.Filament(20, un.TipLoad(75.0))
-    >>> left = un.helix(model, 0.2, right_handed=False)
+    >>> left = un.helix(un.Filament(20, un.TipLoad(75.0)), 0.2, right_handed=False)
     """
     if model.dimension == 2:
         raise InputError("a confined model cannot start as a helix; take the planar start")
@@ -188,8 +185,7 @@ def mode(model: Model, amplitude: float = 1e-2, *, angle: float = 0.0) -> State:
     Examples
     --------
     >>> import undula as un
-    >>> model = un.Filament(20, un.TipLoad(75.0), confined=True)
-    >>> x = un.mode(model, 0.1)
+    >>> x = un.mode(un.Filament(20, un.TipLoad(75.0), confined=True), 0.1)
     """
     _check_angle(model, angle)
     deflection = leading_mode(model)[1]

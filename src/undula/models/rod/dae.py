@@ -91,13 +91,13 @@ class RodFlow:
         return out, dragged
 
     def rotated(self, y: Array, angle: float) -> Array:
-        """Return a vector (n,) of links in space turned about the axis by an angle [rad]."""
+        """Return a vector (n,) of links in space rotated about the axis by an angle [rad]."""
         return self.layout.rotated(y, angle)
 
     def from_plane(self, y: Array) -> Array:
-        """Return vectors of the same links confined to the x-z plane as vectors (..., n) of these.
+        """Return vectors of the same links confined to the x-z plane as vectors (..., n) in space.
 
-        Both kinds of links have their positions and tensions alone; confined ones do not unwrap.
+        Both kinds have positions and tensions only; the confined links have no unwrapped angles.
         """
         return self.layout.from_plane(y)
 

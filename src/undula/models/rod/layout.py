@@ -88,20 +88,20 @@ class Layout:
         return by_node.ravel()
 
     def rotated(self, vector: Array, angle: float) -> Array:
-        """Return a vector (n,) in space turned about the axis by an angle [rad], from x to y."""
+        """Return a vector (n,) in space rotated about the axis by an angle [rad], from x to y."""
         by_node = np.array(vector, dtype=float).reshape(self.links, self.stride)
         cosine, sine = np.cos(angle), np.sin(angle)
         by_node[:, :2] = by_node[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
         return by_node.ravel()
 
     def rotation_generator(self, vector: Array) -> Array:
-        """Return the derivative (n,) of a vector in space turned by an angle, at angle 0."""
+        """Return the derivative (n,) of a rotated vector in space by the angle, at angle 0."""
         by_node, velocity = self.by_node(vector), np.zeros((self.links, self.stride))
         velocity[:, _X], velocity[:, _Y] = -by_node[:, _Y], by_node[:, _X]
         return velocity.ravel()
 
     def reflected(self, vector: Array) -> Array:
-        """Return a vector (n,) with x turned to -x."""
+        """Return a vector (n,) with x reflected to -x."""
         by_node = np.array(vector, dtype=float).reshape(self.links, self.stride)
         by_node[:, _X] *= -1.0
         return by_node.ravel()

@@ -8,13 +8,19 @@ from undula.numerics.linalg.banded import to_dense
 
 
 def rate_jacobian(equations: RodFlow, y: Array, v: Array) -> Array:
-    """Return the derivative (k, k) of the rates of positions by positions, from R v = f and g = 0.
+    """Return the derivative of the rates of positions by positions, from R v = f and g = 0.
 
     Parameters
     ----------
     equations : RodFlow
+        The equations.
     y, v : ndarray of shape (n,)
         Positions with their multipliers, and the rates of change there.
+
+    Returns
+    -------
+    ndarray of shape (k, k)
+        The derivative, for k positions.
     """
     layout, moving = equations.layout, equations.differential
     lengths = np.arange(y.size) % layout.stride == layout.dimension
@@ -47,7 +53,7 @@ def transverse_matrices(equations: RodFlow, y: Array) -> tuple[Array, Array]:
     """
     stiffness, drag = equations.parts(y, np.zeros(y.size), 0.0)
     m = equations.layout.stride
-    # Band entry b + k m belongs to x of the node k further on. With b = 3 m - 1 the first one is
-    # m - 1, for k = -2.
+    # Band entry b + k m belongs to x of the node that is k nodes farther. With b = 3 m - 1 the
+    # first such entry is m - 1, for k = -2.
     across = slice(m - 1, None, m)
     return to_dense(stiffness[::m, across]), to_dense(drag[::m, across])
