@@ -15,7 +15,7 @@ ROOMS = ("analysis", "models", "numerics")
 #: Of the other packages the files that read nothing that is typed and no file that a command makes.
 PURE = {
     "inputs": ("build", "messages", "model_tables", "ranges", "run_tables", "sweep_table", "table"),
-    "sweeps": ("blocks", "point", "sweep"),
+    "sweeps": ("chunk_grid", "point", "sweep"),
     "schema": ("sweep_variables",),
     "storage": ("differences",),
     "reproduction/claims": ("catalogue", "errata", "evaluate", "measures", "sweep_measures"),
