@@ -36,7 +36,7 @@ def clone(tmp_path: Path) -> Path:
         ("docs/index.md", []),
     ],
 )
-def test_of_files_a_change_are_those_beside_it_that_import_it(
+def test_tests_of_a_change_are_those_beside_it_that_import_it(
     changed: str, tests: list[str], clone: Path
 ) -> None:
     assert sorted(of_files([changed], clone)) == [f"tests/{test}" for test in tests]
