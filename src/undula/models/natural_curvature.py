@@ -142,7 +142,8 @@ def mean_over_pieces(curvature: NaturalCurvature, links: int) -> Array:
     middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
     s = (middle[:, None] + half[:, None] * _POINTS).ravel()
     values = _values(curvature, s).reshape(2, links + 1, _POINTS.size)
-    return np.asarray((0.5 * values @ _WEIGHTS).T)
+    # In the order of the arrays of pairs, for which kernels are compiled already.
+    return np.ascontiguousarray((0.5 * values @ _WEIGHTS).T)
 
 
 def require_below_pi(curvature: NaturalCurvature, links: int, most: int) -> None:
