@@ -15,17 +15,6 @@ TESTS = sorted((ROOT / "tests").rglob("*.py"))
 MOST_FILES, MOST_LINES, MOST_LINES_OF_A_FUNCTION = 22, 300, 40
 #: Factories write out, in one place, the kernel that they make.
 FACTORIES = SOURCE / "models" / "rod"
-#: Functions that are longer, to be cut: no other may join them.
-LONG = {
-    "analysis/runs/simulation.py: advance",
-    "analysis/runs/finite_separation.py: finite_separation",
-    "app/commands/threshold.py: answer_threshold_curve",
-    "app/solving_commands.py: follow",
-    "app/solving_commands.py: threshold",
-    "reproduction/figures/exponents.py: lyapunov",
-    "reproduction/figures/frequencies.py: _draw_panel",
-    "reproduction/figures/frequencies.py: frequencies",
-}
 
 
 @pytest.fixture(scope="module")
@@ -108,4 +97,4 @@ def lines_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
 
 def test_no_function_is_too_long() -> None:
     long = {name: lines for name, lines in functions() if lines > MOST_LINES_OF_A_FUNCTION}
-    assert {name: lines for name, lines in long.items() if name not in LONG} == {}
+    assert long == {}

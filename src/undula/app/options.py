@@ -68,6 +68,38 @@ Budget = Annotated[
     float | None,
     typer.Option(metavar="SECONDS", help="Stop after so long, with what there is (exit status 3)."),
 ]
+FollowedKind = Annotated[
+    str,
+    typer.Argument(metavar="KIND", help="straight, spinning, flapping, equilibrium or periodic."),
+]
+Way = Annotated[
+    str,
+    typer.Option(
+        metavar="KEY=START:END", help="The way, as load.force=38:300 or load.force=onset:300."
+    ),
+]
+RunsToDraw = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--run", metavar="RESULT.nc", parser=a_file, help="A stored run to draw as a dot."
+    ),
+]
+ThresholdName = Annotated[
+    str,
+    typer.Argument(metavar="NAME", help="onset, spinning-lost, flapping-gained or flapping-lost."),
+]
+SecondParameter = Annotated[
+    str | None,
+    typer.Option(metavar="KEY=RANGE", help="Along a parameter, as model.drag_ratio=1:3:9."),
+]
+EndOfSearch = Annotated[
+    float | None,
+    typer.Option(
+        "--up-to",
+        metavar="FORCE",
+        help="Where the search ends; without it, at 20 times the force of the onset.",
+    ),
+]
 
 
 def seconds_of(budget: float | None) -> float:

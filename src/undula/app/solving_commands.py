@@ -1,6 +1,6 @@
 """The commands that solve for states: stability, find, follow and threshold."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -8,7 +8,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from undula.app.options import Changes, Converge, Input, Json, Overwrite, Plot, a_file
+from undula.app.options import (
+    Changes,
+    Converge,
+    EndOfSearch,
+    FollowedKind,
+    Input,
+    Json,
+    Overwrite,
+    Plot,
+    RunsToDraw,
+    SecondParameter,
+    ThresholdName,
+    Way,
+    a_file,
+)
 from undula.errors import InputError
 
 if TYPE_CHECKING:
@@ -101,28 +115,13 @@ def find(
 
 
 def follow(
-    kind: Annotated[
-        str,
-        typer.Argument(
-            metavar="KIND", help="straight, spinning, flapping, equilibrium or periodic."
-        ),
-    ],
-    along: Annotated[
-        str,
-        typer.Option(
-            metavar="KEY=START:END", help="The way, as load.force=38:300 or load.force=onset:300."
-        ),
-    ],
+    kind: FollowedKind,
+    along: Way,
     file: Input = None,
     changes: Changes = None,
     converge: Converge = False,
     plot: Plot = None,
-    runs: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--run", metavar="RESULT.nc", parser=a_file, help="A stored run to draw as a dot."
-        ),
-    ] = None,
+    runs: RunsToDraw = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> int:
@@ -155,27 +154,12 @@ def follow(
 
 
 def threshold(
-    name: Annotated[
-        str,
-        typer.Argument(
-            metavar="NAME", help="onset, spinning-lost, flapping-gained or flapping-lost."
-        ),
-    ],
+    name: ThresholdName,
     file: Input = None,
     changes: Changes = None,
-    along: Annotated[
-        str | None,
-        typer.Option(metavar="KEY=RANGE", help="Along a parameter, as model.drag_ratio=1:3:9."),
-    ] = None,
+    along: SecondParameter = None,
     converge: Converge = False,
-    up_to: Annotated[
-        float | None,
-        typer.Option(
-            "--up-to",
-            metavar="FORCE",
-            help="Where the search ends; without it, at 20 times the force of the onset.",
-        ),
-    ] = None,
+    up_to: EndOfSearch = None,
     plot: Plot = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
@@ -207,13 +191,20 @@ def threshold(
             )
 
         def save(path: Path) -> None:
-            from undula.app.commands.drawing import draw_thresholds
-
-            done = axis[0], axis[1][: len(thresholds)]
-            units = model.units.names()
-            draw_thresholds(name, done, thresholds, path, claim, title=title, units=units)
+            _save_curve(path, claim, (name, axis, thresholds), title, model.units.names())
 
         return _reply(answer, plot, save, as_json=as_json)
+
+
+def _save_curve(
+    path: Path, claim: "Claim", curve: tuple[Any, ...], title: str, units: Mapping[str, str]
+) -> None:
+    """Draw a curve: a threshold's name, the axis of the parameter, and those that were found."""
+    from undula.app.commands.drawing import draw_thresholds
+
+    name, (parameter, values), thresholds = curve
+    done = parameter, values[: len(thresholds)]
+    draw_thresholds(name, done, thresholds, path, claim, title=title, units=units)
 
 
 def _reply(

@@ -115,13 +115,12 @@ def finite_separation(
     time, distances, fits = np.zeros(0), [], []
     for done in range(pairs):
         nearby = state + FIRST_SEPARATION * random.normal(size=state.size)
-        pair = []
-        for member, x in enumerate((state, nearby)):
-            motion = _run(model, x, schedule, progress, (2 * done + member, 2 * pairs))
-            if isinstance(motion, NotFollowed):
-                return motion
-            pair.append(motion)
-        first, second = pair
+        first = _run(model, state, schedule, progress, (2 * done, 2 * pairs))
+        if isinstance(first, NotFollowed):
+            return first
+        second = _run(model, nearby, schedule, progress, (2 * done + 1, 2 * pairs))
+        if isinstance(second, NotFollowed):
+            return second
         time, state = first.time, model.from_nodes(first.nodes[-1])
         path, other = _radius_and_height(first), _radius_and_height(second)
         distances.append(np.linalg.norm(path - other, axis=1))

@@ -169,16 +169,17 @@ class Simulation:
         self._keep(states if parts == 1 else states[-fine[0] % parts :: parts].copy())
         if noted:
             self.recent.note(self.interval / parts, int(fine[0]), states)
-        status = self._status(code)
+        return self._after_steps(self._status(code), sections[:found])
+
+    def _after_steps(self, status: Status, maxima: Array) -> bool:
+        """Note times and states of maxima (k, 1 + n + RATES); return False where the run ends."""
         if status not in (Status.DONE, Status.PAUSED):
             self.ending, self.cause = Ending.FAILED, status.advice
             return False
         if self.memory.count[names.STEPS] >= self.marks[-1].count[names.STEPS] + STEPS_PER_MARK:
             self.marks.append(copied(self.memory))
-        shapes = self._nodes(sections[:found, 1:]) if found else ()
-        self.detector.note(
-            self._pace(), list(zip(sections[:found, 0].tolist(), shapes, strict=True))
-        )
+        shapes = self._nodes(maxima[:, 1:]) if len(maxima) else ()
+        self.detector.note(self._pace(), list(zip(maxima[:, 0].tolist(), shapes, strict=True)))
         return not self.schedule.open_ended or self._goes_on()
 
     def apply(self, decision: Decision) -> None:

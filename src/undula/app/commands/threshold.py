@@ -73,6 +73,18 @@ def answer_threshold_curve(
             progress=progress,
             stop=interrupted,
         )
+    return _curve_answer(model, name, along, curve, title), curve
+
+
+def _curve_answer(
+    model: Model,
+    name: str,
+    along: tuple[str, tuple[float, ...]],
+    curve: tuple[Threshold, ...],
+    title: str,
+) -> Answer:
+    """Return the answer for the thresholds that were found along a second parameter."""
+    parameter, values = along
     done = len(curve) == len(values)
     # A chain of other links has other further units.
     units = [changed(model, parameter, value).units for value in values[: len(curve)]]
@@ -92,7 +104,7 @@ def answer_threshold_curve(
         *(f"  {value:>12.6g}  {_line(row, own)}" for value, row, own in rows),
         *_cure(answers),
     ]
-    return Answer(answer, "\n".join(lines)), curve
+    return Answer(answer, "\n".join(lines))
 
 
 def threshold_answer(result: Threshold, units: Units) -> dict[str, Any]:

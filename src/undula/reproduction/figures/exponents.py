@@ -75,19 +75,22 @@ def lyapunov(*runs: xr.Dataset) -> Figure:
             handles.append(Line2D([], [], ls="", marker=marker, color=colour, ms=5.5, label=name))
             drawn.append(values)
         quiet_line(axes)
-        every = np.concatenate(drawn)
-        _scale(axes, every)
-        count = max(values.size for values in drawn)
-        for edge in np.arange(1 if pairs else 2, count + 1) - 0.5:
-            axes.axvline(edge, color=style.SHADOW, lw=0.5, zorder=0)
-        axes.set_xlim(-0.5 if pairs else 0.5, count + 0.5)
-        numbers = list(range(0 if pairs else 1, count + 1))
-        axes.set_xticks(numbers, ["pairs\nof runs" if k == 0 else f"{k}" for k in numbers])
-        axes.set_xlabel("number of the exponent")
-        axes.set_ylabel(r"Lyapunov exponent $\lambda$  $[1/T]$")
+        _scale(axes, np.concatenate(drawn))
+        _number_axis(axes, max(values.size for values in drawn), pairs=pairs)
         top = legend_above(figure, handles, 0.095)
         axes.set_position((0.095, 0.135, 0.88, top - 0.165))
     return figure
+
+
+def _number_axis(axes: Any, count: int, *, pairs: bool) -> None:
+    """Set the axis of the exponents' numbers, the rate of pairs of runs first."""
+    for edge in np.arange(1 if pairs else 2, count + 1) - 0.5:
+        axes.axvline(edge, color=style.SHADOW, lw=0.5, zorder=0)
+    axes.set_xlim(-0.5 if pairs else 0.5, count + 0.5)
+    numbers = list(range(0 if pairs else 1, count + 1))
+    axes.set_xticks(numbers, ["pairs\nof runs" if k == 0 else f"{k}" for k in numbers])
+    axes.set_xlabel("number of the exponent")
+    axes.set_ylabel(r"Lyapunov exponent $\lambda$  $[1/T]$")
 
 
 def _stored(summary: Mapping[str, Any]) -> Mapping[str, Any]:

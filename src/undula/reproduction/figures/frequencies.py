@@ -84,11 +84,7 @@ def frequencies(
             "growth is no answer of `undula stability --forces` in the package's own time unit;"
             " give one"
         )
-    rows = _rows(growth)
-    last = last_force(pair)
-    onset = min(float(branch.line.values.min()) for branch in pair)
-    first = max(last / _PARTS, math.ceil(_ONSETS * onset))
-    ends = (first, last) if first < _NEARLY_ALL * last else (last,)
+    rows, ends = _rows(growth), _last_forces(pair)
     places = _COLUMNS if len(ends) == 2 else _ALONE
     dots = _dots(runs, units)
     with style.figure_style():
@@ -105,11 +101,19 @@ def frequencies(
             axes.set_xlabel(style.force_label(units))
             axes.set_ylabel(style.frequency_label(paper_time=False))
         if len(panels) == 2:
-            _box(panels[1], first, panels[0].get_ylim()[1])
+            _box(panels[1], ends[0], panels[0].get_ylim()[1])
             for axes, which in zip(panels, "ab", strict=True):
                 letter_axes(figure, axes, which, 0.6)
         legend_above(figure, _handles(pair, dots), places[0][0])
     return figure
+
+
+def _last_forces(pair: Pair) -> tuple[float, ...]:
+    """Return the last force of each panel."""
+    last = last_force(pair)
+    onset = min(float(branch.line.values.min()) for branch in pair)
+    first = max(last / _PARTS, math.ceil(_ONSETS * onset))
+    return (first, last) if first < _NEARLY_ALL * last else (last,)
 
 
 def _rows(growth: Mapping[str, Any]) -> Rows:
@@ -173,15 +177,7 @@ def _draw_panel(
     greatest = _HEADROOM * (float(finite.max(initial=0.0)) or 1.0)
     deepest = -_HEADROOM * float(finite.min(initial=0.0))
     below = min(max(deepest / greatest, _LEAST_BELOW), _MOST_BELOW)
-    right = axes.twinx()
-    look: Any = {"color": STRAIGHT[0], "lw": 1.3, "dash_capstyle": "butt", "ls": (0, (7.0, 2.5))}
-    right.plot(forces, rates, gid="straight, growth rate", **look)
-    right.set_ylim(-below * greatest, greatest)
-    right.set_ylabel(style.growth_rate_label(paper_time=False))
-    right.spines["right"].set_visible(True)
-    right.yaxis.set_major_locator(MaxNLocator(6))
-    axes.set_zorder(right.get_zorder() + 1)
-    axes.patch.set_visible(False)
+    _draw_rates(axes, forces, rates, (-below * greatest, greatest))
     axes.plot(forces, turns, color=STRAIGHT[0], lw=1.6, gid="straight, frequency")
     for branch in pair:
         draw_branch(axes, branch, branch.line.frequencies)
@@ -198,6 +194,19 @@ def _draw_panel(
     axes.set_xlim(0.0, end)
     axes.set_ylim(-below * top, top)
     axes.yaxis.set_major_locator(MaxNLocator(6))
+
+
+def _draw_rates(axes: Axes, forces: Array, rates: Array, limits: tuple[float, float]) -> None:
+    """Draw the growth rate of the straight state on an axis at the right, behind all else."""
+    right = axes.twinx()
+    look: Any = {"color": STRAIGHT[0], "lw": 1.3, "dash_capstyle": "butt", "ls": (0, (7.0, 2.5))}
+    right.plot(forces, rates, gid="straight, growth rate", **look)
+    right.set_ylim(*limits)
+    right.set_ylabel(style.growth_rate_label(paper_time=False))
+    right.spines["right"].set_visible(True)
+    right.yaxis.set_major_locator(MaxNLocator(6))
+    axes.set_zorder(right.get_zorder() + 1)
+    axes.patch.set_visible(False)
 
 
 def _box(axes: Axes, width: float, height: float) -> None:
