@@ -295,7 +295,7 @@ def test_kept_borders_of_something_else_are_passed_over(tmp_path: Path, content:
 
 def test_borders_of_another_study_are_not_used(tmp_path: Path) -> None:
     write_boundaries(tmp_path, sweep(), made_borders())
-    other = sweep().assign_attrs(sweep='{"model": {"segments": 20}}')
+    other = sweep().assign_attrs(study='{"model": {"segments": 20}}')
     assert read_boundaries(tmp_path, other) == []
     part = sweep().isel({"load.force": slice(0, 3)})
     assert read_boundaries(tmp_path, part) == []
