@@ -86,7 +86,7 @@ def test_a_long_command_raises_no_floating_point_warning(
 def test_singular_equations_are_told_in_one_sentence(
     singular: Any, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(finding, "kind_of", lambda _: singular())
+    monkeypatch.setattr(finding, "kind_by_name", lambda _: singular())
     assert main(["find", "spinning", *FEW]) == 2
     told = capfd.readouterr()
     assert told.out == ""

@@ -126,7 +126,7 @@ def test_a_series_of_steps_keeps_its_steps(
     ask: Ask,
 ) -> None:
     # In the moment in which the first step is stored.
-    monkeypatch.setattr("undula.app.commands.step._Keeper.__call__", sends(ending, times=2))
+    monkeypatch.setattr("undula.app.commands.step._Saver.__call__", sends(ending, times=2))
     words = ["step", *FEW, "--along", "load.force=10:30:10", "--out", str(tmp_path), "--json"]
     asked = ask(*words)
     found = answer(asked, status=3)

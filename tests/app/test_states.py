@@ -251,7 +251,7 @@ def test_a_bifurcation_is_taken_to_many_links_on_request(
 
 
 def test_a_bifurcation_without_a_limit_says_so(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("undula.analysis.solvers.refind._NEARBY", (0.01,))
+    monkeypatch.setattr("undula.analysis.solvers.refind._HALF_WIDTHS", (0.01,))
     words = ["follow", "spinning", *FEW, "--along", "load.force=140:145", "--converge"]
     (torus,) = answer(ask(*words, "--json"))["bifurcations"]
     assert "no such change" in torus["not_converged"]

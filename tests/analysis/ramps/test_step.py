@@ -338,7 +338,7 @@ def test_an_interrupted_series_goes_on_to_the_same_end(
     words = ["step", *TWO, *THROUGH, "--out", "split", "--json"]
     for count, held in ((2, 2), (1, 3)):
         with monkeypatch.context() as patch:
-            patch.setattr(stepping, "settle_and_step", stopping_after(count))
+            patch.setattr(stepping, "ramp", stopping_after(count))
             stopped = ask(*words)
         found = answer(stopped, status=3)
         assert (found["status"], len(found["steps"]), found["missing"]) == (
@@ -359,7 +359,7 @@ def test_a_spent_budget_keeps_what_there_is(
     nothing = answer(ask(*words, "--budget", "1e-9"), status=3)
     assert (nothing["status"], nothing["steps"], nothing["store"]) == ("out of time", [], None)
     with monkeypatch.context() as patch:
-        patch.setattr(stepping, "settle_and_step", stopping_after(3))
+        patch.setattr(stepping, "ramp", stopping_after(3))
         ask(*words)
     again = answer(ask(*words, "--budget", "1e-9"), status=3)
     assert (again["status"], len(again["steps"])) == ("out of time", 3)
@@ -371,7 +371,7 @@ def test_a_spent_budget_keeps_what_there_is(
 def test_an_interruption_before_the_first_step_leaves_nothing(
     ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stepping, "settle_and_step", stopping_after(0))
+    monkeypatch.setattr(stepping, "ramp", stopping_after(0))
     assert ask("step", *TWO, *THROUGH, "--out", "none")[:2] == (130, "")
     assert not Path("none").exists()
 

@@ -249,7 +249,7 @@ def test_a_bifurcation_at_the_edge_of_a_range_is_found_again_within_it() -> None
 def test_a_limit_that_is_not_reached_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     known = of_eight("spinning-lost").at
     assert known is not None
-    monkeypatch.setattr("undula.analysis.solvers.refind._NEARBY", (0.01,))
+    monkeypatch.setattr("undula.analysis.solvers.refind._HALF_WIDTHS", (0.01,))
     limit = limit_of(known, "load.force")
     assert isinstance(limit, NotFound)
     assert "no such change between load.force" in limit.reason
