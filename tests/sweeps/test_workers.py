@@ -220,7 +220,7 @@ def test_a_worker_that_was_given_up_is_made_good(
     cluster = one._client.cluster
     # What watches over the worker ends, as it does if the worker cannot start.
     cluster.sync(next(iter(cluster.workers.values())).close)
-    one._mend_due = 0.0
+    one._replace_due = 0.0
     assert asked(one, os.getpid) != before
 
 
@@ -335,7 +335,7 @@ def test_a_scheduler_without_workers_and_one_that_is_gone(
             with pytest.raises(LostError, match="left by its scheduler"):
                 asked(workers, point_records, sweep.dump(), (1,))
             for act in (lambda: workers.has_room, lambda: list(workers.come_back(0.1))):
-                workers._look_due = 0.0
+                workers._count_due = 0.0
                 with pytest.raises(LostError):
                     act()
     monkeypatch.setattr(pool_module, "PATIENCE", 1.0)

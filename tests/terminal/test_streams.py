@@ -131,12 +131,12 @@ def test_a_stream_that_fails_or_is_closed_takes_everything() -> None:
     stream.write("one")
     stream.write("two")
     stream.flush()
-    assert stream.why_not_kept is not None
+    assert stream.trouble is not None
     closed = io.StringIO()
     closed.close()
     quiet = Guarded(closed)
     quiet.write("one")
-    assert (quiet.why_not_kept, quiet.isatty(), Guarded(None).isatty()) == (None, False, False)
+    assert (quiet.trouble, quiet.isatty(), Guarded(None).isatty()) == (None, False, False)
 
 
 @pytest.mark.parametrize("name", ["", *COMMANDS])

@@ -3,6 +3,7 @@
 import numpy as np
 
 import undula as un
+from undula.analysis.observables.frequency import whole_motion_frequency
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.fine_tail import close_up
 from undula.analysis.runs.run import Run
@@ -103,5 +104,5 @@ def test_spinning_is_told_without_a_close_up_and_as_with_one() -> None:
     assert told.name == "spinning"
     assert "motion" not in vars(run.closer)
     assert run.close_up.time.size > run.window.time.size
-    closely = un.analysis.frequency.whole_motion_frequency(run.shown.time, run.shown.nodes)
+    closely = whole_motion_frequency(run.shown.time, run.shown.nodes)
     assert abs(frequency.value - closely.value) <= frequency.error + closely.error
