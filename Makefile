@@ -49,7 +49,7 @@ run: $(RUN)
 
 # Side by side: the checks are done while kernels are compiled.
 test: $(DEV)
-	$(MAKE) --jobs=3 lint docs tests
+	$(MAKE) --no-print-directory --jobs=3 lint docs tests
 
 tests: kernels
 	$(BIN)/python -m pytest $(PARALLEL)
