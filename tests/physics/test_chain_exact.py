@@ -236,7 +236,7 @@ def test_the_methods_of_the_continuum_are_refused(method: Method) -> None:
 
 def test_the_links_of_a_chain_have_no_limit() -> None:
     for ask in (
-        lambda: un.converged(chain_of(3).with_(force=8.0), "spinning"),
+        lambda: un.extrapolate(chain_of(3).with_(force=8.0), "spinning"),
         lambda: un.threshold(chain_of(3), "spinning-lost", converged=True),
     ):
         assert "links of this model are its body" in complaint(ask)

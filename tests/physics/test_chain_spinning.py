@@ -38,7 +38,7 @@ class TwoLinks(NamedTuple):
     rate: float
     inclination: float
     turn: float  # of the second joint
-    anisotropy: float  # of the second link's azimuth behind the first one's
+    lag: float  # of the second link's azimuth behind the first one's
 
     @property
     def bending_energy(self) -> float:
@@ -46,7 +46,7 @@ class TwoLinks(NamedTuple):
 
     @property
     def tip_radius(self) -> float:
-        return np.sin(self.inclination) * np.cos(0.5 * self.anisotropy)
+        return np.sin(self.inclination) * np.cos(0.5 * self.lag)
 
 
 def g(psi: float) -> float:
@@ -68,7 +68,7 @@ def inclined(a: float, spring: float, inner: float, outer: float) -> TwoLinks:
         rate=4.0 * np.sqrt(stiffened * g(b) / (inner * outer)),
         inclination=a,
         turn=b,
-        anisotropy=2.0 * np.arctan(np.sqrt(stiffened / (ratio * g(b)))),
+        lag=2.0 * np.arctan(np.sqrt(stiffened / (ratio * g(b)))),
     )
 
 
@@ -76,7 +76,7 @@ def shape_of(state: TwoLinks) -> Array:
     """Return the positions of the beads, the first one in the x-z plane."""
     out, up = np.sin(state.inclination), np.cos(state.inclination)
     first = np.array([out, 0.0, up])
-    second = np.array([out * np.cos(state.anisotropy), -out * np.sin(state.anisotropy), up])
+    second = np.array([out * np.cos(state.lag), -out * np.sin(state.lag), up])
     return 0.5 * np.concatenate([first, first + second])
 
 
@@ -101,8 +101,8 @@ def assert_is(state: un.Spinning, exact: TwoLinks, spring: float) -> None:
         # Round-off of a cosine next to 1.
         assert link[2] == pytest.approx(np.cos(exact.inclination), rel=1e-12)
     azimuths = np.arctan2([first[1], second[1]], [first[0], second[0]])
-    anisotropy = np.sign(state.rate) * (azimuths[0] - azimuths[1]) % (2.0 * np.pi)
-    assert anisotropy == pytest.approx(exact.anisotropy, rel=1e-10)
+    lag = np.sign(state.rate) * (azimuths[0] - azimuths[1]) % (2.0 * np.pi)
+    assert lag == pytest.approx(exact.lag, rel=1e-10)
 
 
 @pytest.mark.parametrize("force", FORCES)
@@ -248,7 +248,7 @@ def test_a_run_spins_at_the_frequency_solved_for(links: int, force: float) -> No
 
 
 def test_many_links_spin_to_second_order_like_a_filament_longer_by_one() -> None:
-    limit = un.converged(Filament(20, TipLoad(75.0), drag_ratio=1.0), "spinning").values
+    limit = un.extrapolate(Filament(20, TipLoad(75.0), drag_ratio=1.0), "spinning").values
     links, errors = np.array([10, 20, 40]), []
     for n in links:
         stretch = 1.0 + 1.0 / n

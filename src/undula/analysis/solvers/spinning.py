@@ -59,7 +59,7 @@ def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning
     >>> import undula as un
     >>> state = un.find_spinning(un.Filament(8, un.TipLoad(75.0)))
     >>> state.stable, round(state.frequency)
-    (True, 86)
+    (True, 87)
     """
     require_space(model)
     require_turning(model, "spinning")

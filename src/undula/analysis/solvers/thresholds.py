@@ -74,7 +74,7 @@ def threshold(
     >>> import undula as un
     >>> onset = un.threshold(un.Filament(40, un.TipLoad(75.0)), "onset")
     >>> round(onset.value, 4), onset.bifurcation
-    (37.6948, 'Hopf')
+    (37.6954, 'Hopf')
     """
     _check_kind(kind)
     if up_to is not None and not (is_number(up_to) and up_to > 0.0):
@@ -147,7 +147,7 @@ def threshold_curve(
     >>> model = un.Filament(40, un.TipLoad(75.0))
     >>> onsets = un.threshold_curve(model, "onset", "model.drag_ratio", [1.5, 2.0])
     >>> [round(onset.value, 4) for onset in onsets]
-    [37.6948, 37.6948]
+    [37.6954, 37.6954]
     """
     if parameter == FORCE:
         raise InputError(f"thresholds are values of {FORCE}; take another parameter for a curve")
