@@ -144,6 +144,9 @@ class Pair:
     def straight(self) -> State:
         return np.concatenate([chain.straight() for chain in self.chains])
 
+    def straight_unknowns(self) -> Array:
+        return self.unknowns(self.straight())
+
     def unknowns(self, x: State) -> Array:
         parts = zip(self.chains, self.split(x), strict=True)
         return np.concatenate([[0.0], *(chain.unknowns(part) for chain, part in parts)])
