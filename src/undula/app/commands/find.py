@@ -100,8 +100,8 @@ def state_answer(state: Solved) -> dict[str, Any]:
             "turn": state.angle,
             "time_error": state.time_error,
         }
-        return {"kind": "periodic"} | swinging | period
-    return {
+        return shared | {"kind": "periodic"} | swinging | period
+    return shared | {
         "kind": "flapping",
         **swinging,
         "leading_rate_in_plane": state.leading_rate_in_plane,
