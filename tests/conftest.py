@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from answer_keys import unknown_keys
 from commands import Ask, Asked
 
 # No screen is needed, and none is looked for.
@@ -32,13 +33,16 @@ def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def ask(capsys: pytest.CaptureFixture[str]) -> Ask:
-    """Give a function that runs a command in this process."""
+    """Give a function that runs a command in this process; it holds the keys of its answer."""
     from undula.app.cli import main
+    from undula.schema.answer_keys import ANSWERS
 
     def run(*words: str | Path) -> Asked:
         capsys.readouterr()
         status = main([*map(str, words)])
         said = capsys.readouterr()
+        if "--json" in words and words[0] in ANSWERS:
+            assert unknown_keys(said.out, ANSWERS[str(words[0])]) == []
         return Asked(status, said.out, said.err)
 
     return run

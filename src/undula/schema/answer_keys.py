@@ -1,0 +1,301 @@
+"""Keys of the JSON objects with which commands answer, and the quantities that they hold.
+
+An object is described by the `Keys` that it may hold: each of them by a quantity, which fixes its
+unit, by the keys of an object, or of the objects of a list, or by `Named`, whose keys the input
+gives. Not every answer holds all of its keys; none holds another. Their meanings are in
+docs/output.md.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+#: Without a unit: words, numbers of things, ratios, angles in radians, and mixed lists.
+PLAIN = "plain"
+#: Quantities with a unit.
+LENGTH, TIME, FREQUENCY, RATE = "length", "time", "frequency", "rate"
+FORCE, ENERGY = "force", "energy"
+
+
+@dataclass(frozen=True)
+class Named:
+    """An object whose keys are names that the input or the outcome gives, as verdicts.
+
+    Attributes
+    ----------
+    values
+        Quantity or keys of each of its values.
+    """
+
+    values: Any
+
+
+#: The keys of an object by their names.
+Keys = Mapping[str, Any]
+#: The key under which an object holds the value of a parameter: the parameter's own name.
+PARAMETER = "<parameter>"
+
+
+def plain(*names: str) -> Keys:
+    """Return keys without a unit."""
+    return dict.fromkeys(names, PLAIN)
+
+
+def with_error(name: str, quantity: str) -> Keys:
+    """Return the keys of a number and of its error."""
+    return {name: quantity, f"{name}_error": quantity}
+
+
+def range_of(quantity: str) -> Keys:
+    """Return the keys of the range of a quantity."""
+    return dict.fromkeys(("min", "max", "mean"), quantity)
+
+
+#: A force in the further units of a chain.
+_FURTHER = Named(FORCE)
+_NAMES = plain("length", "force", "energy", "power", "time", "frequency")
+#: Keys of every answer.
+EVERY: Keys = plain("status", "error")
+_EXTENTS: Keys = {
+    "bending_energy": range_of(ENERGY),
+    "tip_radius": range_of(LENGTH),
+    "tip_height": range_of(LENGTH),
+}
+_FREQUENCIES: Keys = {
+    **with_error("frequency", FREQUENCY),
+    **with_error("rotation_frequency", FREQUENCY),
+    **with_error("shape_frequency", FREQUENCY),
+}
+_RATES: Keys = dict.fromkeys(
+    ("leading_rate", "leading_rate_in_plane", "leading_rate_out_of_plane"), RATE
+)
+_REFERENCE: Keys = plain("links", "error_of")
+
+# ---------------------------------------------------------------- runs
+
+_EXPONENTS: Keys = {
+    **dict.fromkeys(("value", "error", "exponents", "errors"), RATE),
+    **with_error("beyond_symmetry", RATE),
+    **plain("symmetries"),
+    "duration": TIME,
+    "finite_separation": {"rate": RATE, "error": RATE, **plain("saturated")},
+}
+#: Numbers that the name of a motion rests on.
+EVIDENCE: Keys = {
+    **with_error("frequency", FREQUENCY),
+    **with_error("lyapunov", RATE),
+    **with_error("decay_rate", RATE),
+    "leading_rate": RATE,
+    "ringing_frequency": FREQUENCY,
+    "shape_period": TIME,
+    **dict.fromkeys(("displacement", "distance", "recurrence_distance"), LENGTH),
+    **plain("drift", "shape_drift", "shape_change", "misfit", "planarity", "winding_coherence"),
+    **plain("maxima", "maxima_a_period", "periods", "samples", "samples_per_period"),
+    **plain("sense_of_rotation", "turn_a_period", "turns", "plane_turns", "bias"),
+    **plain("decay_factor", "zero_crossings", "energy_swing"),
+}
+HEALTH: Keys = {
+    **plain("power_balance_error", "length_error", "largest_joint_angle", "folded"),
+    "smallest_step": TIME,
+    "largest_step": TIME,
+    **plain("steps", "rejected", "failed", "factorisations", "solves", "frame", "frame_changes"),
+}
+RUN: Keys = {
+    **EVERY,
+    **plain("cause", "load", "verdict", "reason", "margin", "without_lyapunov"),
+    **plain("planarity", "winding_angle", "seed", "output", "figure", "movie"),
+    "units": _NAMES,
+    "force": FORCE,
+    "force_in": _FURTHER,
+    **_REFERENCE,
+    "evidence": EVIDENCE,
+    "lyapunov": _EXPONENTS,
+    **_FREQUENCIES,
+    **_EXTENTS,
+    "precession": {
+        **dict.fromkeys(("tip_turns", "plane_turns", "beats"), FREQUENCY),
+        **plain("side_switching"),
+    },
+    **dict.fromkeys(("time", "window", "longer", "settled_from", "tight_from"), TIME),
+    "settled": {
+        **plain("kind", "cycles", "turn", "brief"),
+        **dict.fromkeys(("since", "period", "remaining"), TIME),
+    },
+    "solved": {
+        **plain("kind", "relative"),
+        "time": TIME,
+        "distance": LENGTH,
+        "leading_rate": RATE,
+    },
+    **HEALTH,
+    # Wall time.
+    **plain("seconds"),
+}
+
+# ---------------------------------------------------------------- thresholds and states
+
+_RINGING: Keys = {
+    **dict.fromkeys(("oscillatory_force", "oscillatory_error", "hopf_force", "error"), FORCE),
+    **dict.fromkeys(("oscillatory_force_in", "hopf_force_in"), _FURTHER),
+    "hopf_frequency": FREQUENCY,
+    "frequency_error": FREQUENCY,
+    **plain("hopf_growth_slope", "reason"),
+    "searched_to": FORCE,
+}
+_EIGENVALUE: Keys = {"rate": RATE, "frequency": FREQUENCY, "error": RATE}
+STABILITY: Keys = {
+    **EVERY,
+    **plain("load", "method", "paper_time", "figure", "parameter"),
+    "units": _NAMES,
+    **_RINGING,
+    "later": {
+        **with_error("frequency", FREQUENCY),
+        "force": FORCE,
+        "force_in": _FURTHER,
+        "error": FORCE,
+        **plain("growth_slope"),
+    },
+    "force": FORCE,
+    "force_in": _FURTHER,
+    "spectrum": _EIGENVALUE,
+    "points": {PARAMETER: PLAIN, "force": FORCE, "force_in": _FURTHER, **_EIGENVALUE},
+    "thresholds": {PARAMETER: PLAIN, **_RINGING},
+}
+FIND: Keys = {
+    **EVERY,
+    **plain("kind", "reason", "stable", "residual", "power_balance_error", "turn"),
+    "units": _NAMES,
+    "force": FORCE,
+    "force_in": _FURTHER,
+    **_REFERENCE,
+    **dict.fromkeys(("frequency", "error", "solver_error", "time_error"), FREQUENCY),
+    **_RATES,
+    **_EXTENTS,
+    "period": TIME,
+    "trivial_rate": RATE,
+    **plain("trivial_multiplier_error"),
+    "errors": Named(PLAIN),
+}
+FOLLOW: Keys = {
+    **EVERY,
+    **plain("reason", "parameter", "birth", "figure"),
+    "onset": FORCE,
+    "units": _NAMES,
+    "points": {
+        PARAMETER: PLAIN,
+        "frequency": FREQUENCY,
+        **plain("stable"),
+        **_RATES,
+        **_EXTENTS,
+    },
+    "bifurcations": {
+        PARAMETER: PLAIN,
+        **plain("kind", "value", "error", "stability", "not_converged"),
+        **_REFERENCE,
+        "force_in": _FURTHER,
+        "frequency": FREQUENCY,
+        "second_frequency": FREQUENCY,
+    },
+}
+_THRESHOLD: Keys = {
+    **plain("threshold", "reason", "bifurcation"),
+    **_REFERENCE,
+    **dict.fromkeys(("value", "error", "solver_error", "searched_to"), FORCE),
+    "force_in": _FURTHER,
+    "frequency": FREQUENCY,
+    "second_frequency": FREQUENCY,
+}
+THRESHOLD: Keys = {
+    **EVERY,
+    **_THRESHOLD,
+    **plain("parameter", "figure"),
+    "units": _NAMES,
+    "thresholds": {PARAMETER: PLAIN, **_THRESHOLD},
+}
+
+# ---------------------------------------------------------------- ramps
+
+_CHANGE: Keys = plain("direction", "before", "after", "start", "end")
+RAMP: Keys = {
+    **EVERY,
+    **plain("parameter", "load", "missing", "store", "figure"),
+    "units": _NAMES,
+    "steps": {
+        **plain("value", "direction", "status", "cause", "verdict", "reason", "planarity"),
+        **plain("power_balance_error", "length_error", "steps", "seconds"),
+        "time": TIME,
+        **_FREQUENCIES,
+        **_EXTENTS,
+    },
+    "regimes": plain("direction", "verdict", "start", "end", "steps"),
+    "changes": _CHANGE,
+    "hysteresis": plain("low", "high", "up", "down"),
+    "thresholds": {**_THRESHOLD, "nearest_change": _CHANGE},
+}
+
+# ---------------------------------------------------------------- sweeps
+
+SWEEP: Keys = {
+    **EVERY,
+    **plain("store", "load", "label", "keep", "policy", "tries", "seconds"),
+    "units": _NAMES,
+    "axes": plain("key", "first", "last", "count"),
+    "points": plain("all", "done", "failed", "to_go"),
+    "verdicts": Named(PLAIN),
+    "failures": {PARAMETER: PLAIN, **plain("try", "reason")},
+}
+PLOT: Keys = {
+    **EVERY,
+    **plain("figure", "points", "done", "failed", "parameter"),
+    "verdicts": Named(PLAIN),
+    **_REFERENCE,
+    "borders": Named({PARAMETER: PLAIN, "force": FORCE, "error": FORCE, **plain("reason")}),
+    "disagreements": {PARAMETER: PLAIN, **plain("try", "verdict", "sentence", "near")},
+    "basins": {
+        PARAMETER: PLAIN,
+        **plain("tries"),
+        "verdicts": Named(plain("fraction", "low", "high")),
+    },
+}
+
+# ---------------------------------------------------------------- others
+
+MOVIE: Keys = {**EVERY, **plain("movie")}
+UNITS: Keys = {
+    **EVERY,
+    "filament": plain("length_um", "stiffness_pn_um2", "viscosity_mpa_s", "slenderness"),
+    "units": Named(plain("physical", "unit")),
+    "converted": plain("quantity", "dimensionless", "physical", "unit"),
+}
+#: A claim of the paper and its value; also a row of claims.json.
+CLAIM: Keys = {
+    **plain("claim", "item", "figure", "title", "says", "published", "within", "over_a_range"),
+    **plain("command", "value", "error", "unit", "verdict", "reason", "because", "note"),
+    **plain("expected", "as_expected", "erratum", "silent", "steps", "where"),
+    # The settings that the value is computed at.
+    "at": Named(PLAIN),
+}
+REPRODUCE: Keys = {
+    **EVERY,
+    **plain("report", "claims_file"),
+    "claims": CLAIM,
+    "verdicts": Named(PLAIN),
+    "items": plain("name", "title", "paper", "claims"),
+}
+
+#: The keys of an answer, by the command.
+ANSWERS: Mapping[str, Keys] = {
+    "run": RUN,
+    "resume": RUN,
+    "stability": STABILITY,
+    "find": FIND,
+    "follow": FOLLOW,
+    "threshold": THRESHOLD,
+    "step": RAMP,
+    "sweep": SWEEP,
+    "status": SWEEP,
+    "plot": PLOT,
+    "movie": MOVIE,
+    "units": UNITS,
+    "reproduce": REPRODUCE,
+}
