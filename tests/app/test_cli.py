@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from commands import PATIENCE, UNDULA, Ask, answer, ended, in_process, refused, started
+from pace import mostly_slow
 from undula.analysis.run_settings import Schedule
 from undula.app.cli import main
 from undula.storage.run_file import load_checkpoint, load_result
@@ -223,6 +224,7 @@ def test_split_is_whole_to_round_off(ask: Ask) -> None:
         np.testing.assert_array_equal(one[name], two[name], err_msg=name)
 
 
+@pytest.mark.slow
 def test_a_run_out_of_its_budget_is_kept_and_goes_on_to_its_end(ask: Ask) -> None:
     # A run is ended between two looks at it, some hundred steps apart; this one has thousands.
     words = [*TINY, "--set", "load.force=200", "--set", "time.until=0.05"]
@@ -267,6 +269,7 @@ def test_a_broken_or_foreign_file_is_refused_in_one_sentence(
     assert len(asked[2].splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_figures_and_movies_are_made_from_the_stored_file_alone(
     ask: Ask, stored: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -324,7 +327,7 @@ def test_ctrl_c_leaves_a_result_that_can_be_resumed(ask: Ask) -> None:
     assert more["time"] > found["time"]
 
 
-@pytest.mark.parametrize("moment", [0.01, 0.15])
+@pytest.mark.parametrize("moment", mostly_slow([0.01, 0.15], lambda moment: moment < 0.1))
 def test_kill_leaves_a_whole_file_at_any_moment(moment: float, ask: Ask) -> None:
     with eager("run", *ENDLESS) as command:
         wait_for(Path("results/run/run.nc"), command)

@@ -102,6 +102,7 @@ def test_a_run_says_on_how_many_links_its_numbers_hold(
     assert "(3 links" not in said
 
 
+@pytest.mark.slow
 def test_a_state_has_the_error_of_links_and_solver_together(ask: Ask) -> None:
     for kind in ("spinning", "flapping"):
         found = answer(ask("find", kind, *FEW, "--json"))

@@ -109,6 +109,7 @@ def answer(command: list[str], folder: Path, **environment: str) -> dict[str, An
     return told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [

@@ -105,7 +105,7 @@ def test_every_option_is_given_values_of_its_kind(files: Files) -> None:
 
 
 def test_no_call_ends_in_a_traceback_or_a_hang(files: Files, tmp_path: Path, capfd: Any) -> None:
-    tried(120, files, tmp_path, capfd)
+    tried(40, files, tmp_path, capfd)
 
 
 @pytest.mark.slow

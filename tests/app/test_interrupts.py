@@ -190,6 +190,7 @@ def test_exponents_that_are_stopped_leave_the_run_and_say_so(
     assert load_result(tmp_path / "run.nc").attrs["summary"]
 
 
+@pytest.mark.slow
 def test_exponents_heed_the_budget_and_show_how_far_they_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ask: Ask
 ) -> None:

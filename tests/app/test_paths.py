@@ -126,6 +126,7 @@ def test_a_name_that_nothing_has_is_told_in_one_sentence(
     assert content() == before
 
 
+@pytest.mark.slow
 def test_a_place_that_is_closed_is_told_in_one_sentence() -> None:
     if not are_kept_out(Path("closed")):
         pytest.skip("no folder is closed to this user, and no rights can be given up")
@@ -140,6 +141,7 @@ def test_a_place_that_is_closed_is_told_in_one_sentence() -> None:
     assert content() == before
 
 
+@pytest.mark.slow
 def test_a_store_that_is_read_only_is_read_and_not_written(tmp_path: Path) -> None:
     if not are_kept_out(Path("closed")):
         pytest.skip("no folder is closed to this user, and no rights can be given up")

@@ -6,6 +6,7 @@ import pytest
 
 import undula as un
 from commands import Ask, Asked, answer
+from pace import mostly_slow
 from undula.analysis.solvers.quantities import quantities_of
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning
@@ -94,6 +95,7 @@ def test_flapping_is_answered_with_what_python_computes(ask: Ask) -> None:
     assert found["time_error"] < 1e-6 * found["frequency"]
 
 
+@pytest.mark.slow
 def test_the_stated_error_of_few_links_is_about_the_true_one(ask: Ask) -> None:
     for kind in ("spinning", "flapping"):
         few = answer(ask("find", kind, "--set", "model.segments=16", "--json"))
@@ -192,6 +194,7 @@ def test_a_branch_is_answered_with_its_points_and_bifurcations(ask: Ask) -> None
         assert points[-1][key] == pytest.approx(alone[key], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_branch_of_beats_holds_both_rates(ask: Ask) -> None:
     found = answer(ask("follow", "flapping", *FEW, "--along", "load.force=130:145", "--json"))
     for point in found["points"]:
@@ -328,7 +331,7 @@ DRAWN = {
 }
 
 
-@pytest.mark.parametrize("question", DRAWN)
+@pytest.mark.parametrize("question", mostly_slow(DRAWN, lambda name: name != "flapping"))
 def test_every_curve_can_be_drawn_and_says_where(question: str, ask: Ask) -> None:
     status, said, _ = ask(*DRAWN[question], "--plot", "new/figure.png")
     assert status == 0
@@ -338,7 +341,7 @@ def test_every_curve_can_be_drawn_and_says_where(question: str, ask: Ask) -> Non
     assert "<svg" in Path("figure.svg").read_text()
 
 
-@pytest.mark.parametrize("question", DRAWN)
+@pytest.mark.parametrize("question", mostly_slow(DRAWN, lambda name: name == "curve"))
 def test_a_figure_replaces_nothing_unless_told_to(
     question: str, ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:

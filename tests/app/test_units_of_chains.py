@@ -96,6 +96,7 @@ def test_every_text_of_a_chain_tells_its_force_and_its_time_below_the_heading(
     assert len(re.findall(r" K(,|\n)", rest)) == energies
 
 
+@pytest.mark.slow
 def test_a_force_beside_a_chains_own_is_explained_where_it_is_told(ask: Ask) -> None:
     explained = set()
     for name, (words, _) in COMMANDS.items():

@@ -89,6 +89,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of address space are Linux's")
 def test_the_command_keeps_to_the_limit_of_its_process(tmp_path: Path) -> None:
     words = ["run", "--set", "model.segments=10", "--set", "time.until=0.01", "--no-movie"]

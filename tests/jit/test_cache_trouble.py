@@ -210,6 +210,7 @@ def test_a_package_in_an_archive_is_kept_too_and_its_changes_are_noticed(
     assert shown(toy) == "5.0 0 None"
 
 
+@pytest.mark.slow
 def test_checks_of_bounds_reach_kernels_and_are_kept_apart(
     toy: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

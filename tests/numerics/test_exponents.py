@@ -43,6 +43,7 @@ def followed(
     return list(blocks)
 
 
+@pytest.mark.slow
 def test_the_exponents_of_lorenz_are_the_published_ones() -> None:
     blocks = followed(Known(LORENZ), ON_THE_BUTTERFLY, 3, 2000.0)
     values, errors = mean_rates(blocks, 1e-8)
@@ -76,6 +77,7 @@ def test_fewer_changes_give_the_leading_exponents() -> None:
     np.testing.assert_allclose(two, all_of_them[:2], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_changes_stay_independent_in_blocks_of_any_length() -> None:
     # In a block of 12 units of time the third change shrinks by exp(-190) against the first.
     blocks = followed(Known(LORENZ), ON_THE_BUTTERFLY, 3, 12.0 * BLOCKS)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import undula as un
+from pace import mostly_slow
 from planar_chain import beat, rate_out_of_plane
 from undula.analysis.states.branch import Branch
 from undula.analysis.states.not_found import NotFound
@@ -24,7 +25,7 @@ def flapping(model: Chain) -> un.Flapping:
 
 @pytest.mark.parametrize(
     ("links", "force"),
-    [(2, 8.0), (2, 11.0), (3, 8.0), pytest.param(3, 20.0, marks=pytest.mark.slow)],
+    mostly_slow([(2, 8.0), (2, 11.0), (3, 8.0), (3, 20.0)], lambda beat: beat == (2, 8.0)),
 )
 def test_beats_are_those_of_the_angles_by_scipy(links: int, force: float) -> None:
     state, expected = flapping(plain(links, force)), beat(links, force)
@@ -39,6 +40,7 @@ def test_beats_are_those_of_the_angles_by_scipy(links: int, force: float) -> Non
     assert state.leading_rate_out_of_plane == pytest.approx(out_of_plane, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("links", "force", "rate"), [(2, 12.0, 44.2), (3, 24.0, 47.5)])
 def test_nearly_folded_beats_have_the_rates_of_the_note(
     links: int, force: float, rate: float
@@ -47,6 +49,7 @@ def test_nearly_folded_beats_have_the_rates_of_the_note(
     assert rate_out_of_plane(links, force, beat(links, force)) == pytest.approx(rate, abs=0.05)
 
 
+@pytest.mark.slow
 def test_the_joint_at_the_base_of_two_links_folds_at_a_force_beyond_twice_the_onset() -> None:
     # docs/notes/chains.md: there the beat meets the kink of the spring.
     turns = [beat(2, force).turns[0] for force in (12.1163, 12.1165)]
@@ -59,14 +62,10 @@ def followed_to_its_end(links: int, to: float) -> Branch[un.Flapping]:
     return branch
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("links", "folded"),
-    [
-        (2, 12.11638),
-        pytest.param(3, 24.29071, marks=pytest.mark.slow),
-        pytest.param(4, 35.17762, marks=pytest.mark.slow),
-        pytest.param(5, 45.42, marks=pytest.mark.slow),
-    ],
+    [(2, 12.11638), (3, 24.29071), (4, 35.17762), (5, 45.42)],
 )
 def test_beats_of_two_to_five_links_are_unstable_out_of_their_plane_up_to_where_a_joint_folds(
     links: int, folded: float
@@ -96,6 +95,7 @@ def _largest_turns(state: un.Flapping) -> Array:
 GAINED, LOST_AGAIN = 25.43308, 44.92109
 
 
+@pytest.mark.slow
 def test_six_links_flap_stably_in_a_window() -> None:
     gained = un.threshold(plain(6), "flapping-gained")
     # The digits of the note.
@@ -105,9 +105,8 @@ def test_six_links_flap_stably_in_a_window() -> None:
         assert flapping(plain(6, force)).stable == stable
 
 
-@pytest.mark.parametrize(
-    ("links", "overlap"), [(6, False), (7, True), pytest.param(10, True, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("links", "overlap"), [(6, False), (7, True), (10, True)])
 def test_from_seven_links_on_both_motions_are_stable_in_between(links: int, overlap: bool) -> None:
     gained = un.threshold(plain(links), "flapping-gained").value
     lost = un.threshold(plain(links), "spinning-lost").value

@@ -5,13 +5,20 @@ from pathlib import Path
 
 import pytest
 
+from pace import mostly_slow
 from pages import DOCS, ROOT
 
 ALL = sorted(path for path in (ROOT / "examples").iterdir() if path.suffix in (".py", ".toml"))
 PROGRAMS = [path for path in ALL if path.suffix == ".py"]
+#: Programs that take half a minute and more.
+LONG = {"natural_curvature", "second_transition", "two_and_three_links"}
 
 
-@pytest.mark.parametrize("example", PROGRAMS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "example",
+    mostly_slow(PROGRAMS, lambda path: path.stem not in LONG),
+    ids=lambda path: path.stem,
+)
 def test_an_example_runs_and_draws_its_figure(example: Path, tmp_path: Path) -> None:
     figure = tmp_path / "figure.png"
     # Each asserts its own claim.

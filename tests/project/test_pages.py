@@ -12,6 +12,7 @@ import pytest
 import typer
 
 import undula
+from pace import mostly_slow
 from pages import DOCS, PAGES, blocks, called, name, named, typed
 from stand_ins import BegunError, examples_in, results_in, stop_where_work_begins
 from undula.app.cli import app, main
@@ -25,6 +26,12 @@ BLANK = re.compile(r"\b[A-Z]+\b(?!\^)")
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 
 MODEL = undula.Filament(4, undula.TipLoad(75.0))
+
+#: Pages whose Python is run by `make test-slow` alone.
+SLOW_PAGES = {
+    *("docs/diagrams.md", "docs/output.md"),
+    *("docs/theory/curved.md", "docs/theory/regimes.md"),
+}
 
 with_python = [page for page in PAGES if blocks(page)]
 
@@ -69,7 +76,9 @@ def agree(promised: str, told: str) -> bool:
     return abs(other - number) < 1.01 * last
 
 
-@pytest.mark.parametrize("page", with_python, ids=name)
+@pytest.mark.parametrize(
+    "page", mostly_slow(with_python, lambda page: name(page) not in SLOW_PAGES), ids=name
+)
 def test_the_python_of_a_page_runs_and_prints_what_it_says(
     page: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -56,6 +56,7 @@ def opened(browser, report: Path) -> None:
     browser.get(report.as_uri())
 
 
+@pytest.mark.slow
 def test_all_figures_are_there_and_nothing_is_complained_of(browser, report) -> None:
     opened(browser, report)
     widths = browser.execute_script("return [...document.images].map((one) => one.naturalWidth)")
@@ -93,6 +94,7 @@ def test_rows_can_be_chosen_by_verdict(browser, report) -> None:
     assert sum(row.is_displayed() for row in rows) == 4
 
 
+@pytest.mark.slow
 def test_a_diagram_opens_to_be_pointed_at(browser, report) -> None:
     from selenium.webdriver.common.by import By
     from selenium.webdriver.support.ui import WebDriverWait

@@ -175,6 +175,7 @@ class Page(HTMLParser):
 WHOLE = pytest.param((), id="whole", marks=pytest.mark.slow)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", [pytest.param(("--quick",), id="quick"), pytest.param(("onset",), id="part"), WHOLE]
 )

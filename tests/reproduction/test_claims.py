@@ -144,6 +144,7 @@ def test_a_wrong_published_value_changes_the_verdict(tmp_path: Path) -> None:
     assert judge(catalogue(wrong)["onset"].claims[0], answers).verdict == "corrected"
 
 
+@pytest.mark.slow
 def test_a_perturbed_coefficient_of_the_equations_changes_verdicts(monkeypatch, tmp_path) -> None:
     item = ITEMS["transition"]
     asked = {told.name: told for told in item.claims}

@@ -32,6 +32,7 @@ def folder(tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_everything_is_computed_judged_and_told(folder, capsys) -> None:
     status, answer = reproduce(capsys, folder, "--workers", "1", "--vector")
     assert (status, answer["status"]) == (0, "done")
@@ -55,6 +56,7 @@ def test_everything_is_computed_judged_and_told(folder, capsys) -> None:
     }
 
 
+@pytest.mark.slow
 def test_the_command_of_a_row_gives_its_value(folder, capsys) -> None:
     _, answer = reproduce(capsys, folder, "onset", "--workers", "1")
     again = reproduce(capsys, folder, "onset", "--workers", "1", "--fresh")[1]
@@ -91,6 +93,7 @@ def test_a_wrong_published_value_is_told_by_the_exit_status(tmp_path, capsys, mo
     assert "known to be confirmed" in page
 
 
+@pytest.mark.slow
 def test_what_is_kept_is_not_computed_again(folder, capsys) -> None:
     reproduce(capsys, folder, "onset", "--workers", "1")
     kept = folder / "report" / "data" / "onset" / "onset" / "answer.json"

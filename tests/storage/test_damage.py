@@ -82,7 +82,7 @@ def damaged_at_random(kind: str, count: int, seed: int) -> dict[str, int]:
 # ---------------------------------------------------------------- at random
 
 
-@pytest.mark.parametrize("kind", ["run", "answer", "store"])
+@pytest.mark.parametrize("kind", ["run", "answer", pytest.param("store", marks=pytest.mark.slow)])
 def test_random_damage_is_never_believed(kind: str) -> None:
     assert sum(damaged_at_random(kind, 25, 1).values()) == 25
 

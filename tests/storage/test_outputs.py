@@ -300,6 +300,7 @@ def test_a_start_is_not_replaced_by_the_run_that_begins_from_it(result: Path, as
     assert result.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_figure_of_others_is_told_before_a_run_is_taken_up(result: Path, ask: Ask) -> None:
     before = result.read_bytes()
     Path("run.png").write_bytes(MINE)
@@ -379,6 +380,7 @@ def test_a_folder_of_others_is_no_report(ask: Ask) -> None:
     assert files_of(Path("thesis/data/onset/onset")) == {"key": MINE, "measured.csv": MINE}
 
 
+@pytest.mark.slow
 def test_files_of_others_in_a_report_are_told_and_stay(ask: Ask) -> None:
     words = ["reproduce", "onset", "--catalogue", "catalogue", "--workers", "1"]
     small_catalogue(Path("catalogue"))
@@ -430,6 +432,7 @@ def test_of_two_runs_into_one_folder_the_second_is_refused_at_once(
     assert files_of(Path("r")).keys() == {"run.nc", "run.png"}
 
 
+@pytest.mark.slow
 def test_after_a_run_was_killed_the_next_one_has_its_names() -> None:
     with endless("r") as first:
         first.kill()

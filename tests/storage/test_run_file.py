@@ -130,6 +130,7 @@ def test_names_of_checkpoint_arrays_cannot_get_in_each_others_way(tmp_path: Path
     assert all(bits(loaded[name]) == bits(content[name]) for name in content)
 
 
+@pytest.mark.slow
 def test_the_same_content_gives_the_same_bytes_in_another_process(
     stored: Path, tmp_path: Path
 ) -> None:

@@ -136,6 +136,7 @@ label = "solved"
 """
 
 
+@pytest.mark.slow
 def test_solved_states_of_a_line_are_those_of_its_points(tmp_path: Path) -> None:
     sweep = sweep_of(tmp_path, SOLVED + AXES)
     assert sweep.whole_rows
@@ -148,6 +149,7 @@ def test_solved_states_of_a_line_are_those_of_its_points(tmp_path: Path) -> None
         assert line["frequency"].values[place] == pytest.approx(alone["frequency"], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_line_of_solved_states_in_which_a_point_fails_keeps_the_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -159,6 +161,7 @@ def test_a_line_of_solved_states_in_which_a_point_fails_keeps_the_others(
     assert (found["status"] == 1).all()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_chunks")
 @pytest.mark.parametrize("text", [RANDOM, NEIGHBOUR])
 def test_a_study_that_is_gone_on_with_again_and_again_is_the_same(
@@ -193,6 +196,7 @@ def test_the_status_of_a_block_is_written_last_and_no_other_block_is_touched(
     assert (statuses == 1).all()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_chunks")
 @pytest.mark.parametrize("moment", [1, 5, 20, 24])
 def test_a_block_that_was_cut_short_while_it_was_written_is_done_again(
@@ -241,6 +245,7 @@ def test_a_full_disk_is_told_in_a_sentence_and_what_was_done_is_kept(
     assert load_sweep(store.path)["status"].values.sum() == kept > 0
 
 
+@pytest.mark.slow
 def test_failing_points_are_recorded_and_done_again_on_request_only(tmp_path: Path) -> None:
     sweep = sweep_of(tmp_path, QUICK + AXES)
     done(sweep_of(tmp_path, QUICK + '[study]\nkeep = "run"\n' + AXES), tmp_path / "runs.zarr")

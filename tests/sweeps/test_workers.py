@@ -19,6 +19,7 @@ import pytest
 import xarray as xr
 from distributed import Security, get_worker, rpc
 
+from pace import mostly_slow
 from small_sweeps import AXES, QUICK, differing, done, sweep_of
 from undula.app.cli import main
 from undula.errors import InputError
@@ -98,7 +99,9 @@ values = [20, 60]
 LOG = AXES.replace("count = 5", 'count = 2\nspacing = "log"')
 
 
-@pytest.mark.parametrize("name", SETTINGS)
+@pytest.mark.parametrize(
+    "name", mostly_slow(SETTINGS, lambda name: name in ("keep verdict", "keep run"))
+)
 def test_workers_come_to_what_this_process_comes_to(name: str, one: Pool, tmp_path: Path) -> None:
     table = f"[study]\n{SETTINGS[name]}\n"
     text = QUICK + table + LOG
@@ -224,6 +227,7 @@ def test_a_worker_that_was_given_up_is_made_good(
     assert asked(one, os.getpid) != before
 
 
+@pytest.mark.slow
 def test_a_study_without_workers_is_left_after_a_while(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -306,6 +310,7 @@ def scheduler_alone(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]
         process.wait()
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers_and_one_that_is_gone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -353,6 +358,7 @@ def started(*words: str | Path) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
 
 
+@pytest.mark.slow
 def test_of_sweeps_that_begin_together_one_goes_on_and_the_other_says_so(tmp_path: Path) -> None:
     sweep_of(tmp_path, QUICK.replace("0.05", "2.0") + AXES)
     store = tmp_path / "s.zarr"
@@ -370,6 +376,7 @@ ENDLESS = QUICK.replace("0.05", "50.0") + '[study]\npolicy = "random"\ntries = 1
 slow = pytest.mark.slow
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("ending", "after"),
     [

@@ -40,6 +40,7 @@ def said(tmp_path_factory) -> str:
     return shell("undula stability", tmp_path_factory.mktemp("plain")).stdout.decode()
 
 
+@pytest.mark.slow
 def test_a_run_without_standard_error_does_its_work(tmp_path) -> None:
     done = shell(f"undula {RUN} --json 2>&-", tmp_path)
     assert done.returncode == 0
@@ -73,6 +74,7 @@ def test_a_full_output_is_told_in_one_sentence(tmp_path) -> None:
     assert shell("undula units --forces 1 --json >/dev/full", tmp_path).returncode == 2
 
 
+@pytest.mark.slow
 def test_a_reader_who_has_had_enough_is_no_trouble(tmp_path, said) -> None:
     # `true` reads nothing, so that the pipe is closed before the answer comes.
     for line in ("undula stability | head -1", "undula stability | true", "undula --help | true"):
@@ -101,6 +103,7 @@ def test_json_is_the_same_in_every_locale(tmp_path) -> None:
     assert json.loads(told[0].decode("ascii"))["status"] == "done"
 
 
+@pytest.mark.slow
 def test_names_of_files_that_are_not_unicode_are_told(tmp_path) -> None:
     for words in ("", "--json"):
         done = shell(f"undula plot $'caf\\xe9.nc' {words}", tmp_path, PYTHONUTF8="1")

@@ -506,6 +506,7 @@ def test_kept_borders_are_used_and_contradicting_runs_told(sweep: Path, ask: Ask
     assert "spinning is stable from force 30 to 100 only" in said
 
 
+@pytest.mark.slow
 def test_borders_are_solved_for_once(sweep: Path, ask: Ask) -> None:
     # Below the onset no branch has to be followed, which is quick.
     part = ["plot", sweep, "--borders", "--json", "--at", "load.force=20", "--overwrite"]

@@ -156,6 +156,7 @@ values = [100, 177, 250]
 """
 
 
+@pytest.mark.slow
 def test_where_starts_end_is_what_the_paper_says_except_where_two_states_are_stable(
     tmp_path: Path,
 ) -> None:

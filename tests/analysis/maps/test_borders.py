@@ -43,6 +43,7 @@ def force_of(name: str) -> float:
     return float(of_eight().curve(name)[0][0])
 
 
+@pytest.mark.slow
 def test_the_onset_is_that_of_the_links_as_they_are_and_tends_to_that_of_the_filament() -> None:
     discrete = un.onset(EIGHT, method="discrete").force
     assert force_of("onset") == pytest.approx(discrete, rel=1e-9)
@@ -91,6 +92,7 @@ def test_stretches_reach_from_border_to_border() -> None:
     assert column["flapping"].searched_to == 240.0
 
 
+@pytest.mark.slow
 def test_a_branch_born_downwards_has_a_fold_below_the_onset() -> None:
     borders = over_position()
     fold, onset = (float(borders.curve(name)[0][0]) for name in ("spinning-fold", "onset"))
@@ -139,6 +141,7 @@ def test_a_confined_filament_has_no_border_of_spinning() -> None:
     assert borders.columns[0]["flapping"].stable[0][0] == borders.curve("onset")[0][0]
 
 
+@pytest.mark.slow
 def test_progress_counts_the_values() -> None:
     told: list[tuple[int, int]] = []
     stability_boundaries(

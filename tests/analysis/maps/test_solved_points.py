@@ -37,6 +37,7 @@ def found(kind: str, force: float) -> Spinning | Flapping | NotFound:
     return find(EIGHT.with_(force=force))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("force", [100.0, 141.0, 160.0])
 @pytest.mark.parametrize("kind", ["spinning", "flapping"])
 def test_a_branch_is_read_off_where_single_searches_end(kind: str, force: float) -> None:
@@ -138,6 +139,7 @@ def test_spinning_that_is_born_downwards_is_told_beside_the_straight_state() -> 
     assert alone["spinning_frequency"] == pytest.approx(below["spinning_frequency"], rel=1e-7)
 
 
+@pytest.mark.slow
 def test_a_confined_filament_flaps_and_never_spins() -> None:
     (told,) = stability_along_force(EIGHT.with_(confined=True), [75.0])
     assert (told["verdict"], told["spinning"]) == ("planar flapping", "none")

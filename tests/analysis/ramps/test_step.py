@@ -289,6 +289,7 @@ def test_people_are_told_of_regimes_not_of_steps(ask: Ask, folder: Path) -> None
     assert "hysteresis none: up and down agree at every value" in told
 
 
+@pytest.mark.slow
 def test_thresholds_stand_beside_the_nearest_change(
     ask: Ask, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

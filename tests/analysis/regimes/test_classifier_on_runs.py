@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import undula as un
+from pace import mostly_slow
 from undula.analysis.regimes.lyapunov import lyapunov
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.checkpoint import checkpoint, resume
@@ -95,7 +96,9 @@ def ids(cases: list[Case]) -> list[str]:
     return [case.name for case in cases]
 
 
-@pytest.mark.parametrize("case", CASES, ids=ids(CASES))
+@pytest.mark.parametrize(
+    "case", mostly_slow(CASES, lambda case: case in CASES[::5]), ids=ids(CASES)
+)
 def test_no_run_gets_a_wrong_name(case: Case) -> None:
     found, right = case.run().verdict, solved(case.model)
     assert right, "a case whose end is not known"
@@ -106,11 +109,13 @@ def test_no_run_gets_a_wrong_name(case: Case) -> None:
         assert abs(case.run().frequency.value) == pytest.approx(state.frequency, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_hardly_any_run_to_the_settled_state_is_left_undecided() -> None:
     left = [case.name for case in CASES if case.run().verdict.name == "undecided"]
     assert len(left) <= 0.05 * len(CASES), left
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("force", "kind"),
     [(100.0, "flapping"), (170.0, "flapping"), (200.0, "spinning"), (250.0, "spinning")],
@@ -173,6 +178,7 @@ def test_beyond_planar_flapping_a_run_ends_in_a_stable_motion_that_goes_round(
     assert abs(np.angle(off)) < 5e-3
 
 
+@pytest.mark.slow
 def test_just_beyond_planar_flapping_a_run_ends_in_a_beat_that_is_in_no_plane() -> None:
     # Flapping is lost at 316.17 in a symmetry breaking, which keeps the frequency.
     run = beyond(320.0)

@@ -103,6 +103,7 @@ def test_a_motion_that_is_periodic_up_to_a_turn_has_two_zero_exponents() -> None
     assert found.beyond_symmetry < -ERRORS * found.beyond_symmetry_error
 
 
+@pytest.mark.slow
 def test_the_filament_at_tip_force_800_is_chaotic() -> None:
     model, x = chaotic()
     found = lyapunov(model, x, 0.4)
@@ -129,6 +130,7 @@ def test_a_chain_of_three_links_spins_with_the_exponents_of_its_spectrum() -> No
     assert abs(found.beyond_symmetry - state.leading_rate) <= found.beyond_symmetry_error
 
 
+@pytest.mark.slow
 def test_a_windmilling_chain_of_three_links_is_told_chaotic_by_its_exponents() -> None:
     model = un.Chain(3, un.TipLoad(60.0))
     run = un.integrate(model, un.kicked(model), until=60.0)
@@ -155,6 +157,7 @@ def parted() -> Separation:
     return finite_separation(model, x, 0.015)
 
 
+@pytest.mark.slow
 def test_runs_from_nearby_states_part_at_the_rate_of_the_largest_exponent() -> None:
     pairs, (model, x) = parted(), chaotic()
     exponent = lyapunov(model, x, 0.4)

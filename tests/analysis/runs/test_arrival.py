@@ -257,6 +257,7 @@ values = [30.0, 75.0, 178.0, 250.0]
 """
 
 
+@pytest.mark.slow
 def test_what_runs_do_not_tell_is_told_by_the_one_stable_state(tmp_path: Path) -> None:
     kept = done(sweep_of(tmp_path, SHORT.format(undecided="keep")), tmp_path / "kept.zarr")
     assert set(kept["verdict"].values.ravel()) == {"undecided"}

@@ -35,6 +35,7 @@ def test_a_model_that_is_no_single_rod_spins() -> None:
     assert_among(expected.exponents, state.exponents)
 
 
+@pytest.mark.slow
 def test_a_model_that_is_no_single_rod_flaps() -> None:
     branch, expected = un.follow_from_onset(PAIR, "flapping", FORCE), un.find_flapping(ALONE)
     assert isinstance(branch, Branch)

@@ -238,6 +238,7 @@ def test_the_stated_error_of_the_steps_is_the_true_one(monkeypatch: pytest.Monke
     assert stated.time_error == pytest.approx(true, rel=0.15)
 
 
+@pytest.mark.slow
 def test_nothing_a_run_and_other_links_lead_to_the_same_beat() -> None:
     alone = state_of("tip, unstable")
     flat = EIGHT.with_(confined=True)

@@ -141,6 +141,7 @@ def beating(ratio: float) -> Periodic:
     return state
 
 
+@pytest.mark.slow
 def test_a_planar_beat_in_the_soft_plane_is_that_of_the_round_filament() -> None:
     flapping = un.find_flapping(curved(75.0, (0.0, 0.0)))
     state = beating(1.7)
@@ -151,6 +152,7 @@ def test_a_planar_beat_in_the_soft_plane_is_that_of_the_round_filament() -> None
     assert max(state.trivial) < 1e-6
 
 
+@pytest.mark.slow
 def test_anisotropy_turns_spinning_into_planar_beating() -> None:
     # Clarke, Hwang & Keaveny (2025) find planar beating stabilised by a ratio near 2.
     branch = follow(beating(1.7), "model.bending_ratio", 1.3)
@@ -162,6 +164,7 @@ def test_anisotropy_turns_spinning_into_planar_beating() -> None:
         assert run.verdict.name == word
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("force", "word"), [(100.0, "asymmetric spinning"), (250.0, "asymmetric flapping")]
 )

@@ -77,6 +77,7 @@ def test_a_confined_model_has_no_such_state(settled: Run) -> None:
     assert "confined" in complaint(lambda: find_periodic(STRONG.with_(confined=True), settled))
 
 
+@pytest.mark.slow
 def test_what_flapping_gives_birth_to_ends_where_spinning_is_lost(gained: Threshold) -> None:
     lost = threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
     assert gained.value is not None

@@ -55,6 +55,7 @@ def test_the_motion_found_from_a_run_is_that_of_the_run(settled: un.Run) -> None
     assert state.frequency == pytest.approx(2.0 * state.shape_frequency, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_every_way_to_give_a_run_leads_to_the_same_motion(settled: un.Run) -> None:
     state = found(un.find_periodic(settled))
     stored = un.dataset_of(settled)
@@ -91,6 +92,7 @@ def test_a_run_that_tells_half_its_period_is_solved_for_with_the_whole(settled: 
     check(found(reached(THREE, seen)), settled)
 
 
+@pytest.mark.slow
 def test_another_motion_than_the_run_ends_with_is_no_answer(settled: un.Run) -> None:
     assert settled.settled is not None
     assert settled.settled.period is not None
@@ -114,6 +116,7 @@ def test_a_guess_and_a_seed_are_refused_together(settled: un.Run) -> None:
     assert "leave one out" in complaint(lambda: un.find_periodic(THREE, settled, seed=2))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("own_folder")
 def test_the_command_takes_a_stored_run(ask: Ask) -> None:
     settle = ["--set", 'time.until="settled"', "--no-movie", "--out", "r", "--json"]

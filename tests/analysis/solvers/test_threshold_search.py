@@ -20,6 +20,7 @@ def reason(model: un.Filament, kind: str, up_to: float) -> tuple[str, float | No
     return found.reason, found.searched_to
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "said"),
     [
@@ -38,6 +39,7 @@ def test_where_there_is_none_a_sentence_says_what_there_is_instead(kind: str, sa
     assert reason(EIGHT, kind, up_to) == (said, up_to)
 
 
+@pytest.mark.slow
 def test_stability_that_is_gained_and_kept_is_told() -> None:
     told, _ = reason(EIGHT, "flapping-lost", 145.0)
     said, gained = told.split(" at force ")[0], float(told.split(" at force ")[1].split()[0])

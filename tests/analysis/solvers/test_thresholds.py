@@ -47,8 +47,8 @@ def test_the_onset_is_that_of_the_straight_state() -> None:
     ("kind", "find", "before"),
     [
         ("spinning-lost", find_spinning, True),
-        ("flapping-gained", find_flapping, False),
-        ("flapping-lost", find_flapping, True),
+        pytest.param("flapping-gained", find_flapping, False, marks=pytest.mark.slow),
+        pytest.param("flapping-lost", find_flapping, True, marks=pytest.mark.slow),
     ],
 )
 def test_a_threshold_is_where_the_leading_rate_of_the_state_changes_its_sign(
@@ -164,6 +164,7 @@ def test_a_filament_that_is_pulled_has_no_threshold_and_says_why(kind: str) -> N
     assert "stable" in found.reason
 
 
+@pytest.mark.slow
 def test_flapping_that_is_held_in_its_plane_has_nothing_to_gain(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -360,6 +360,7 @@ def test_the_straight_state_along_the_force_is_lost_at_the_critical_force(
     assert branch.rates.shape == branch.frequencies.shape == branch.values.shape
 
 
+@pytest.mark.slow
 def test_along_the_position_of_a_load_both_sides_of_the_curve_of_thresholds_are_found() -> None:
     # The Hopf force of a point load is least at about 0.78, and 37.7 at the tip.
     model = Filament(20, PointLoad(37.0, 0.8))
