@@ -46,7 +46,7 @@ def scalar(function: Callable[[float], float], derivative: Callable[[float], flo
 
 def test_convergence_is_quadratic_and_ends_at_round_off() -> None:
     found = newton(CROSSING, np.array([1.3, 1.0]), 2.0)
-    assert found.converged
+    assert found.has_converged
     height = 0.5 * (np.sqrt(17.0) - 1.0)
     np.testing.assert_allclose(found.u, [np.sqrt(height), height], rtol=1e-15)
     steps = np.array(found.steps)
@@ -60,13 +60,13 @@ def test_a_step_that_overshoots_is_cut_until_the_residual_falls() -> None:
     # Undamped, the method diverges from |u| > 1.39.
     arctangent = scalar(np.arctan, lambda u: 1.0 / (1.0 + u * u))
     found = newton(arctangent, np.array([3.0]), 0.0)
-    assert found.converged
+    assert found.has_converged
     assert abs(found.u[0]) < 1e-15
 
 
 def test_no_step_is_longer_than_what_the_problem_calls_large() -> None:
     found = newton(scalar(lambda u: u, lambda _: 1.0), np.array([10.0]), 0.0)
-    assert found.converged
+    assert found.has_converged
     assert max(found.steps) == 1.0
     assert found.u[0] == 0.0
 
@@ -89,7 +89,7 @@ def test_a_failure_says_what_to_do(
 ) -> None:
     found = newton(scalar(function, derivative), np.array([0.3]), 0.0)
     assert found.outcome is outcome
-    assert not found.converged
+    assert not found.has_converged
     assert "begin" in found.outcome.value
 
 
@@ -97,5 +97,5 @@ def test_a_region_without_values_is_kept_out_of() -> None:
     # ln u - p has no value at u <= 0, where the first full step leads.
     with np.errstate(invalid="ignore", divide="ignore"):
         found = newton(scalar(np.log, lambda u: 1.0 / u), np.array([2.9]), 0.0)
-    assert found.converged
+    assert found.has_converged
     assert found.u[0] == pytest.approx(1.0, abs=1e-15)

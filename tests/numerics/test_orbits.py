@@ -45,7 +45,7 @@ def test_newton_s_method_converges_quadratically_also_from_off_the_constraint(
     u = near(equations.on_orbit()[equations.differential], *times[:known])
     result = find_orbit(shooting(equations, 24, symmetry), u, 0.0)
     assert result.solution is not None
-    assert result.solution.converged
+    assert result.solution.has_converged
     steps = np.array(result.solution.steps)
     assert 4 <= steps.size <= 6
     # By curvature over slope, below 30 here, and down to round-off.
@@ -164,7 +164,7 @@ def test_a_neighbouring_orbit_is_found_from_the_last_with_few_steps() -> None:
     problem = orbit.problem.with_reference(orbit.u)
     np.testing.assert_array_equal(problem.reference.x, orbit.u[:-1])
     next_one = newton(problem, orbit.u, 1.01)
-    assert next_one.converged
+    assert next_one.has_converged
     assert len(next_one.steps) <= 4
     # The time error with 24 intervals.
     assert next_one.u[-1] == pytest.approx(row_of(1.01).period, rel=1e-7)

@@ -16,14 +16,13 @@ import undula
 SOURCE = Path(undula.__file__).parent
 #: Packages and files, relative to the source, that are not held to the words yet; to be emptied.
 UNFINISHED = {
-    *("jit", "models", "numerics", "reproduction/figures", "views/branches"),
+    *("reproduction/figures", "views/branches"),
     *("app/commands/follow.py", "app/commands/threshold.py"),
     # The docstrings of these commands are their help, which is pinned.
     *("app/plot_commands.py", "app/solving_commands.py"),
     # Its names are words of the catalogue's expressions.
     "reproduction/claims/measures.py",
     *("analysis/maps", "analysis/ramps", "analysis/solvers", "analysis/states"),
-    *("__init__.py", "arrays.py", "errors.py", "interrupts.py"),
 }
 #: Forms that no docstring and no comment has.
 BANNED_FORMS = {

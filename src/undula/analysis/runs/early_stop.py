@@ -181,7 +181,7 @@ class StateDetector:
         problem = TurningShapeAlone(self.model, FORCE, unknowns, abs(turn_rate))
         try:
             solution = newton(problem, np.append(unknowns, turn_rate), 0.0)
-            if not solution.converged:
+            if not solution.has_converged:
                 return
             y, turn_rate = solution.u[:-1], float(solution.u[-1])
             disturbances = Disturbances.of(self.model, y, turn_rate)

@@ -21,10 +21,13 @@ from undula.numerics.continuation.problem import Evaluation, Problem
 
 # Newton's method: norm of the last step, whose square is the error, and number of steps.
 _STEP_TOLERANCE, _MAX_ITERATIONS = 1e-7, 12
+# Norm of a step after the second that means divergence.
+_DIVERGED_NORM = 10.0
 # Iterations up to which the next step may grow, factor of growth, factor after a failure.
 _FEW_ITERATIONS, _GROWTH, _SHRINKAGE = 4, 2.0, 0.4
-# Cosine of the largest rotation of the tangent in one step.
-_MIN_COSINE = 0.5
+# Cosine of the largest rotation of the tangent in one step, and least ratio of the step's length to
+# the distance between the points.
+_MIN_COSINE, _MIN_LENGTH_PER_DISTANCE = 0.5, 0.5
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Steps:
-    """Steps along a branch.
+    """Lengths of the steps along a branch.
 
     Attributes
     ----------
@@ -84,7 +87,7 @@ def trace(
     steps : Steps
         Lengths of the steps.
     ends : (float, float)
-        Least and largest parameter; the last point lies on one of them.
+        Least and largest parameter; the last point lies on one of them, unless the steps fail.
 
     Yields
     ------
@@ -93,14 +96,14 @@ def trace(
     """
     point, length = start, steps.first
     while length >= steps.least:
-        ahead = point.p + length * point.tangent_p
-        end = min(max(ahead, ends[0]), ends[1])
-        at_end = ahead != end and point.p != end
+        predicted = point.p + length * point.tangent_p
+        end = min(max(predicted, ends[0]), ends[1])
+        at_end = predicted != end and point.p != end
         if at_end:
             reached = _point_at(problem, point, end, steps.scale)
         else:
             reached = advance(problem, point, length, steps.scale)
-        # A curved branch may pass an end: after a shorter step the end itself is solved for.
+        # The corrector may pass an end that the predictor did not: a shorter step does not.
         if (
             reached is None
             or not _is_continuous(problem, steps.scale, point, reached, length)
@@ -154,13 +157,13 @@ def advance(problem: Problem, point: Point, length: float, scale: float) -> Poin
         evaluation = _evaluate(problem, u, p)
         if evaluation is None:
             return None
-        ahead = float(row @ (u - point.u)) + corner * (p - point.p) - length
+        excess = float(row @ (u - point.u)) + corner * (p - point.p) - length
         du, dp = _solve_bordered(
-            evaluation, evaluation.by_parameter, row, corner, -evaluation.residual, -ahead
+            evaluation, evaluation.by_parameter, row, corner, -evaluation.residual, -excess
         )
         u, p = u + du, p + dp
         norm = np.sqrt(problem.weights @ du**2 + (dp / scale) ** 2)
-        if not np.isfinite(norm) or (iteration > 2 and norm > 10.0):
+        if not np.isfinite(norm) or (iteration > 2 and norm > _DIVERGED_NORM):
             return None
         if norm < _STEP_TOLERANCE:
             reached = replace(point, u=u, p=p, iterations=iteration)
@@ -208,7 +211,7 @@ def solve_at(problem: Problem, u: Array, p: float) -> tuple[Array, int] | None:
         du, _ = _solve_bordered(evaluation, zeros, zeros, 1.0, -evaluation.residual, 0.0)
         u = u + du
         norm = np.sqrt(problem.weights @ du**2)
-        if not np.isfinite(norm) or (iteration > 2 and norm > 10.0):
+        if not np.isfinite(norm) or (iteration > 2 and norm > _DIVERGED_NORM):
             return None
         if norm < _STEP_TOLERANCE:
             return u, iteration
@@ -236,9 +239,9 @@ def _solve_bordered(
 def _is_continuous(
     problem: Problem, scale: float, point: Point, reached: Point, length: float
 ) -> bool:
-    """Return whether a point continues the branch: near, with a tangent of similar direction."""
+    """Return True if a point continues the branch: near, with a tangent of similar direction."""
     du, dp = reached.u - point.u, reached.p - point.p
     distance = np.sqrt(problem.weights @ du**2 + (dp / scale) ** 2)
     product = problem.weights @ (point.tangent * reached.tangent)
     cosine = product + point.tangent_p * reached.tangent_p / scale**2
-    return bool(cosine >= _MIN_COSINE and _MIN_COSINE * distance <= length)
+    return bool(cosine >= _MIN_COSINE and _MIN_LENGTH_PER_DISTANCE * distance <= length)

@@ -29,7 +29,7 @@ def locate(
     before, after : Point
         Neighbours on a branch, with values of the test of opposite sign.
     test : callable
-        A continuous function of a point.
+        A continuous function of a point, NaN where it is undefined.
     scale : float
         As in `Steps`.
     tolerance : float
@@ -38,7 +38,7 @@ def locate(
     Returns
     -------
     Point or None
-        None if there is no change of sign, or no solution near it.
+        None if the sign does not change, or where no solution or no value is found.
     """
     full_length = float((problem.weights * before.tangent) @ (after.u - before.u))
     full_length += before.tangent_p * (after.p - before.p) / scale**2
@@ -64,7 +64,7 @@ def locate(
         if value(0.0) * value(full_length) > 0.0:
             return None
         root = brentq(value, 0.0, full_length, xtol=tolerance)
-        value(root)
+        value(root)  # stores the point
     except ArithmeticError:
         return None
     return points[root]

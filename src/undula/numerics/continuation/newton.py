@@ -37,7 +37,7 @@ class Solution:
     Attributes
     ----------
     outcome : Convergence
-        Whether it converged, or why not.
+        CONVERGED, or the reason of the failure.
     u : ndarray of shape (m,)
         The solution, or the last iterate.
     steps : tuple of float
@@ -52,8 +52,8 @@ class Solution:
     residual: float
 
     @property
-    def converged(self) -> bool:
-        """True for a solution."""
+    def has_converged(self) -> bool:
+        """True if u is a solution."""
         return self.outcome is Convergence.CONVERGED
 
 

@@ -87,7 +87,7 @@ class Equations(Protocol):
 
     @property
     def differential(self) -> Any:
-        """True at positions, False at multipliers, shape (n,); the same for the equations."""
+        """True at positions and differential rows, False at multipliers and constraints, (n,)."""
 
     def residual(self, y: Array, w: Array) -> Array:
         """Return R(x) w - f(x, z) and g(x, z), shape (n,), for velocities w (n,)."""
@@ -95,8 +95,9 @@ class Equations(Protocol):
     def parts(self, y: Array, w: Array, turn: float) -> tuple[Array, Array]:
         """Return bands (n, 2 b + 1) of d residual / dy and of R.
 
-        The first is taken at fixed w, plus `turn` R S for a w that rotates with the system. Rows of
-        R that belong to constraints are 0. Layout: band[i, j - i + b] = matrix[i, j].
+        The first is taken at fixed w, plus `turn` R S, with the generator S of the rotation, for a
+        w that rotates with the system. Rows of R that belong to constraints are 0. Layout:
+        band[i, j - i + b] = matrix[i, j].
         """
 
     def displacements(self, y: Array) -> Array:

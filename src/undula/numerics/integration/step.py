@@ -110,7 +110,7 @@ def options(
     rtol, atol, stale_after, longest_step : float
         As in `Options`.
     frame : bool
-        Whether the co-rotating frame may be used.
+        True if steps may use the co-rotating frame.
 
     Returns
     -------

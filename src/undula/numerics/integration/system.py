@@ -108,7 +108,9 @@ def residual(system: Any, y: Any, w: Any, c: Any, out: Any) -> Any:
 def matrix(system: Any, y: Any, w: Any, c: Any, turn: Any, band: Any) -> Any:
     """Write d residual / dy, with dw = (1 + turn S) dy, to band (n, 2 b + 1), for Newton's method.
 
-    Where the type's `structure` is stored backwards, the band begins with the last block.
+    In the co-rotating frame `turn` is c times the rate of rotation, else 0. The matrix may be an
+    approximation. Its sparsity is the type's `structure` (`undula.numerics.linalg.banded`), by
+    default a full band; where that is stored backwards, the band begins with the last block.
     """
     raise TypeError("this system has no matrix: register one with implements(matrix, ...)")
 

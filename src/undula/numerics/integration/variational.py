@@ -2,7 +2,7 @@
 
 Predictions, and changes of step and order, are linear in the backward differences. The end of a
 step solves residual(y, w, c) = 0 with y = predicted + d and w = d + psi. A small change of the past
-therefore changes it by the solution of
+therefore changes y by the solution of
 
     J dy = R(x) (dpredicted - dpsi),    J = d residual / dy  with dw = dy.
 
@@ -42,35 +42,35 @@ _NOT_FINITE = Status.NOT_FINITE.value
 
 
 @kernel
-def update_differences(stepper: Any, difference: Any, change: Any) -> None:
-    """Update the backward differences (rows, n) of a change by its value (n,) after a step."""
+def update_differences(stepper: Any, differences: Any, change: Any) -> None:
+    """Update backward differences (rows, n) after a step by the value less its prediction (n,)."""
     order = stepper.count[ORDER]
     for i in range(change.shape[0]):
-        difference[order + 2, i] = change[i] - difference[order + 1, i]
-        difference[order + 1, i] = change[i]
+        differences[order + 2, i] = change[i] - differences[order + 1, i]
+        differences[order + 1, i] = change[i]
     for j in range(order, -1, -1):
         for i in range(change.shape[0]):
-            difference[j, i] += difference[j + 1, i]
+            differences[j, i] += differences[j + 1, i]
 
 
 @kernel
 def propagate(
-    system: Any, stepper: Any, options: Any, work: Any, difference: Any, band: Any, scratch: Any
+    system: Any, stepper: Any, options: Any, work: Any, differences: Any, band: Any, scratch: Any
 ) -> None:
-    """Propagate one small change through the last step."""
-    order, n = stepper.count[ORDER], difference.shape[1]
+    """Propagate one small change, with backward differences (rows, n), through the last step."""
+    order, n = stepper.count[ORDER], differences.shape[1]
     predicted, change = scratch[0], scratch[1]
     for i in range(n):
-        predicted[i], past = difference[0, i], 0.0
+        predicted[i], past = differences[0, i], 0.0
         for j in range(1, order + 1):
-            predicted[i] += difference[j, i]
-            past += options.gamma[j] * difference[j, i]
+            predicted[i] += differences[j, i]
+            past += options.gamma[j] * differences[j, i]
         scratch[2, i] = predicted[i] - past / options.alpha[order]
     apply_drag(system, work.y, scratch[2], change)
     solve_derivative(system, band, change)
     for i in range(n):
         change[i] -= predicted[i]
-    update_differences(stepper, difference, change)
+    update_differences(stepper, differences, change)
 
 
 @entry(
@@ -92,7 +92,7 @@ def advance_with_changes(
     system, stepper, options
         As for `undula.numerics.integration.time_loop.advance`, with options.frame = 0.
     changes : ndarray, shape (k, max order + 3, n)
-        Backward differences of k small changes, changed in place; the first row is the change.
+        Backward differences of k small changes, updated in place; row 0 is the change itself.
     band : ndarray, shape (n, 2 b + 1)
         Scratch for the exact derivative, with its half-bandwidth b.
     end : float

@@ -27,7 +27,7 @@ class Work(NamedTuple):
     turning : ndarray, shape (n,)
         S y.
     phase : ndarray, shape (n,)
-        S psi: a step without rotation in the frame has <S psi, y> = 0.
+        S (predicted - psi): a step without rotation in the frame has <phase, y> = 0.
     correction : ndarray, shape (n,)
         Newton's correction.
     rates : ndarray, shape (RATES,)

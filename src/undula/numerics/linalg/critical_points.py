@@ -7,7 +7,8 @@ The matrix A = K(p) + sigma M, bordered by two vectors,
 
 is regular where A is singular with a simple null vector, and g vanishes exactly there. Derivatives
 of g follow from the same factors: with w the solution of the adjoint system, g_x = -w' A_x c. The
-borders are updated to the approximate null vectors in each step.
+border (b, l) is updated to the approximate null vectors in each step. A pair of eigenvalues crosses
+the axis where g = 0 for sigma = i omega; two coalesce where g = 0 and g_sigma = 0 for a real sigma.
 
 Source: Griewank & Reddien (1983), IMA J. Numer. Anal. 3, 295; Govaerts (2000), Numerical Methods
 for Bifurcations of Dynamical Equilibria, chapter 3.
@@ -27,7 +28,7 @@ from undula.numerics.linalg.pencil import Pencil
 _MAX_STEPS = 40
 # Relative step after which quadratic convergence leaves only round-off.
 _STEP_TOLERANCE = 1e-9
-# Updates of the borders before the first step. Without them the method often fails from a guess
+# Updates of the border before the first step. Without them the method often fails from a guess
 # with an error of 5 per cent; more of them make no difference.
 _INITIAL_UPDATES = 2
 
@@ -90,13 +91,13 @@ def refine_crossing(pencil: Pencil, p: float, omega: float) -> CriticalPair | No
     mass = pencil.mass
     border = None
     for _ in range(_MAX_STEPS):
-        stiffness, slope = pencil.stiffness(p), pencil.slope(p)
-        if not np.isfinite(stiffness + slope).all():
+        stiffness, stiffness_by_p = pencil.stiffness(p), pencil.slope(p)
+        if not np.isfinite(stiffness + stiffness_by_p).all():
             return None
         matrix = stiffness + 1j * omega * mass
         border = border or _Border(matrix)
         bordered = border.factored(matrix)
-        by_p, by_omega = bordered.change(slope), bordered.change(1j * mass)
+        by_p, by_omega = bordered.change(stiffness_by_p), bordered.change(1j * mass)
         jacobian = np.array([[by_p.real, by_omega.real], [by_p.imag, by_omega.imag]])
         step = _newton_step(jacobian, np.array([bordered.g.real, bordered.g.imag]))
         p, omega = p + float(step[0]), omega + float(step[1])
@@ -131,17 +132,18 @@ def refine_coalescence(pencil: Pencil, p: float, sigma: float) -> Coalescence | 
     mass = pencil.mass
     border = None
     for _ in range(_MAX_STEPS):
-        stiffness, slope = pencil.stiffness(p), pencil.slope(p)
-        if not np.isfinite(stiffness + slope).all():
+        stiffness, stiffness_by_p = pencil.stiffness(p), pencil.slope(p)
+        if not np.isfinite(stiffness + stiffness_by_p).all():
             return None
         matrix = stiffness + sigma * mass
         border = border or _Border(matrix)
         bordered = border.factored(matrix)
-        by_p, by_sigma = bordered.change(slope), bordered.change(mass)
-        c_by_p, c_by_sigma = bordered.null_vector_change(slope), bordered.null_vector_change(mass)
-        twice = 2.0 * bordered.product(mass @ c_by_sigma)
-        mixed = bordered.product(mass @ c_by_p + slope @ c_by_sigma)
-        jacobian = np.real([[by_p, by_sigma], [mixed, twice]])
+        by_p, by_sigma = bordered.change(stiffness_by_p), bordered.change(mass)
+        c_by_p = bordered.null_vector_change(stiffness_by_p)
+        c_by_sigma = bordered.null_vector_change(mass)
+        by_sigma_p = bordered.product(mass @ c_by_p + stiffness_by_p @ c_by_sigma)
+        by_sigma_sigma = 2.0 * bordered.product(mass @ c_by_sigma)
+        jacobian = np.real([[by_p, by_sigma], [by_sigma_p, by_sigma_sigma]])
         step = _newton_step(jacobian, np.real([bordered.g, by_sigma]))
         p, sigma = p + float(step[0]), sigma + float(step[1])
         if not (p > 0.0 and np.isfinite(p + sigma)):
@@ -172,6 +174,7 @@ class _Border:
             self.factored(matrix)
 
     def factored(self, matrix: Any) -> _BorderedMatrix:
+        """Return the factored bordered matrix; its null vectors are the next border."""
         bordered = _BorderedMatrix(matrix, self.column, self.row)
         self.row = bordered.c / np.linalg.norm(bordered.c)
         self.column = bordered.w / np.linalg.norm(bordered.w)

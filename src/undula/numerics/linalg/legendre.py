@@ -52,10 +52,12 @@ def legendre_elements(edges: Points, degree: int, s: Points) -> tuple[Array, Arr
         x = 2.0 * (s - left) / h - 1.0
         inside, beyond = (s > left) & (s < right), s >= right
         scale = np.sqrt((2.0 * np.arange(degree + 1) + 1.0) / h)
-        p, once, twice = _with_integrals(np.where(inside, x, 1.0), degree)
+        p, first, second = _with_integrals(np.where(inside, x, 1.0), degree)
         functions.append(np.where(inside[:, None], scale * p, 0.0))
-        after = twice * h**2 / 4.0 + np.where(beyond, s - right, 0.0)[:, None] * once * h / 2.0
-        integrals.append(np.where((inside | beyond)[:, None], scale * after, 0.0))
+        # Beyond the element the second integral grows linearly.
+        growth = np.where(beyond, s - right, 0.0)[:, None] * first * h / 2.0
+        integral = second * h**2 / 4.0 + growth
+        integrals.append(np.where((inside | beyond)[:, None], scale * integral, 0.0))
     return np.hstack(functions), np.hstack(integrals)
 
 
@@ -66,10 +68,10 @@ def _with_integrals(x: Points, degree: int) -> tuple[Array, Array, Array]:
     """
     odd = 2.0 * np.arange(degree + 2) + 1.0
     p = np.asarray(legendre.legvander(x, degree + 2), dtype=np.float64)
-    once = np.empty((x.size, degree + 2))
-    once[:, 0] = x + 1.0
-    once[:, 1:] = (p[:, 2:] - p[:, :-2]) / odd[1:]
-    twice = np.empty((x.size, degree + 1))
-    twice[:, 0] = 0.5 * (x + 1.0) ** 2
-    twice[:, 1:] = (once[:, 2:] - once[:, :-2]) / odd[1:-1]
-    return p[:, : degree + 1], once[:, : degree + 1], twice
+    first = np.empty((x.size, degree + 2))
+    first[:, 0] = x + 1.0
+    first[:, 1:] = (p[:, 2:] - p[:, :-2]) / odd[1:]
+    second = np.empty((x.size, degree + 1))
+    second[:, 0] = 0.5 * (x + 1.0) ** 2
+    second[:, 1:] = (first[:, 2:] - first[:, :-2]) / odd[1:-1]
+    return p[:, : degree + 1], first[:, : degree + 1], second

@@ -2,7 +2,7 @@
 
     K(p) c = -sigma M c
 
-with a parameter p. Eigenvalues are computed as s - 1/mu from the eigenvalues mu of the operator
+Eigenvalues sigma are computed as s - 1/mu from the eigenvalues mu of the shift-inverted matrix
 (K + s M)^-1 M with a shift s. The slow eigenvalues, which decide on stability, then have the
 largest |mu|, and are accurate even where M is compact and most of its own spectrum is lost in
 round-off. Without a shift, an eigenvalue close to 0 would spoil the accuracy of all others.
@@ -70,8 +70,8 @@ def eigenvalues(stiffness: Array, mass: Array) -> ComplexArray:
     ndarray of shape (m,)
         The values sigma, by descending real part, m <= n.
     """
-    inverse = np.asarray(np.linalg.eigvals(_inverse(stiffness, mass)), dtype=complex)
-    values = _SHIFT - 1.0 / inverse[_resolved(inverse)]
+    mu = np.asarray(np.linalg.eigvals(_shift_inverted(stiffness, mass)), dtype=complex)
+    values = _SHIFT - 1.0 / mu[_are_resolved(mu)]
     return np.asarray(values[_by_rate(values)])
 
 
@@ -90,10 +90,10 @@ def eigenpairs(stiffness: Array, mass: Array) -> tuple[ComplexArray, ComplexArra
     vectors : ndarray of shape (n, m)
         Their vectors c as columns.
     """
-    inverse, vectors = np.linalg.eig(_inverse(stiffness, mass))
-    inverse, vectors = np.asarray(inverse, dtype=complex), np.asarray(vectors, dtype=complex)
-    kept = _resolved(inverse)
-    values, vectors = _SHIFT - 1.0 / inverse[kept], vectors[:, kept]
+    mu, vectors = np.linalg.eig(_shift_inverted(stiffness, mass))
+    mu, vectors = np.asarray(mu, dtype=complex), np.asarray(vectors, dtype=complex)
+    kept = _are_resolved(mu)
+    values, vectors = _SHIFT - 1.0 / mu[kept], vectors[:, kept]
     order = _by_rate(values)
     return values[order], vectors[:, order]
 
@@ -127,13 +127,14 @@ def _slowest(stiffness: Array, mass: Array, size: int) -> Array:
     return np.asarray(sl.orth(np.hstack([slow.real, slow.imag]))[:, :size])
 
 
-def _inverse(stiffness: Array, mass: Array) -> Any:
+def _shift_inverted(stiffness: Array, mass: Array) -> Any:
+    """Return (K + s M)^-1 M."""
     return np.linalg.solve(stiffness + _SHIFT * mass, mass)
 
 
-def _resolved(inverse: ComplexArray) -> Any:
-    floor = inverse.size * np.finfo(float).eps * np.abs(inverse).max()
-    return np.abs(inverse) > floor
+def _are_resolved(mu: ComplexArray) -> Any:
+    """Return True for each eigenvalue that exceeds round-off."""
+    return np.abs(mu) > mu.size * np.finfo(float).eps * np.abs(mu).max()
 
 
 def _by_rate(values: ComplexArray) -> Any:

@@ -30,8 +30,8 @@ from undula.numerics.orbits.collocation import Outcome
 from undula.numerics.orbits.flow import resampled
 from undula.numerics.orbits.shooting import Shooting, Shot
 
-# Relative extent below which an orbit is an equilibrium. Near an equilibrium the residual is the
-# square of the distance, so that it is approached to the root of round-off.
+# Relative extent below which an orbit is an equilibrium. Near an equilibrium the residual is of
+# second order, so that Newton's method ends at a distance of about the square root of round-off.
 _REST_TOLERANCE = 1e-7
 
 
@@ -208,7 +208,7 @@ def find_orbit(
         return Search(None, "the guess is an equilibrium; begin from a motion")
     problem = OrbitProblem(shooting, Reference.of(first), LastShot(first))
     solution = newton(problem, u, p)
-    orbit = orbit_at(problem, solution.u, p) if solution.converged else None
+    orbit = orbit_at(problem, solution.u, p) if solution.has_converged else None
     if orbit is None:
         return Search(None, solution.outcome.value, solution)
     if not _moves(orbit.shot):

@@ -78,7 +78,7 @@ def radau(stages: int) -> Radau:
         stages - 1, domain=[0.0, 1.0]
     )
     nodes = np.sort(difference.roots().real)
-    nodes -= difference(nodes) / difference.deriv()(nodes)
+    nodes -= difference(nodes) / difference.deriv()(nodes)  # one Newton step, to round-off
     nodes[-1] = 1.0
     return Radau(nodes, _derivatives(np.append(0.0, nodes))[1:])
 
