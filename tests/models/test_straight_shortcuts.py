@@ -34,7 +34,7 @@ def test_vectors_of_the_straight_state_and_of_a_start_are_those_asked_for_one_by
     straight[:] = np.nan  # whoever has it may write to it
     np.testing.assert_array_equal(model.straight_unknowns(), model.unknowns(model.straight()))
     x = kicked(model, 0.3)
-    unknowns, rates = model.moving(x)
+    unknowns, rates = model.unknowns_and_rates(x)
     np.testing.assert_array_equal(unknowns, model.unknowns(x))
     np.testing.assert_array_equal(rates, model.rates(x))
 

@@ -1,8 +1,8 @@
 """The equations of a model, as solvers of states and the integrator use them.
 
-Positions and multipliers form one vector y (n,). Their order in it is the model's: solvers use the
-masks and maps of this protocol only. A model may therefore be one rod, several rods, or rods with
-other unknowns.
+Positions and multipliers form one vector y (n,) in the model's own order: solvers use the masks
+and maps of this protocol only. A model may therefore be one rod, several rods, or rods with other
+unknowns.
 """
 
 from typing import Any, ClassVar, Protocol
@@ -32,7 +32,7 @@ class ModelEquations(Equations, Protocol):
 
     @property
     def across(self) -> Any:
-        """True at the positions y that a state in the x-z plane has at 0, shape (n,).
+        """True at the y coordinates of nodes, which are 0 in the x-z plane, shape (n,).
 
         The same rows of the equations hold the forces across the plane.
         """

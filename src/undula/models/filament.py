@@ -228,7 +228,13 @@ class Filament(LinkedRod):
         )
 
     def linearised(self) -> tuple[Array, Array]:
-        """Return stiffness and drag (N, N) of small displacements of the straight filament."""
+        """Return stiffness and drag (N, N) of small displacements of the straight filament.
+
+        Raises
+        ------
+        InputError
+            The filament has natural curvature or anisotropic bending.
+        """
         if self.without_rotational_symmetry:
             raise InputError(
                 "small motions about the straight state are those of a filament without natural"
@@ -261,7 +267,7 @@ class Filament(LinkedRod):
         Parameters
         ----------
         unknowns : ndarray, shape (..., n)
-            The integrator's vectors.
+            Vectors of unknowns.
 
         Returns
         -------
@@ -275,7 +281,7 @@ class Filament(LinkedRod):
         return directors_of(self.nodes(self.positions(unknowns)), turns)
 
     def twist_moments(self, unknowns: Array) -> Array:
-        """Return the twist moments (..., N) [B/L] of links, from the integrator's vectors (..., n).
+        """Return the twist moments (..., N) [B/L] of links, from unknowns (..., n).
 
         With twist = "paper" they are computed, but dropped from the forces.
         """

@@ -35,7 +35,7 @@ def straight(model: Model) -> State:
     Raises
     ------
     InputError
-        The load exceeds the tensile stiffness of extensible links.
+        The load is not below the tensile stiffness of extensible links.
 
     Examples
     --------

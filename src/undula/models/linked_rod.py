@@ -47,7 +47,7 @@ class LinkedRod(ABC):
 
     @property
     def axisymmetric(self) -> bool:
-        """True if a state turned about the axis moves like the state itself, turned."""
+        """True if rotations about the axis take motions to motions."""
         return not isinstance(self.system, DirectedRod)
 
     @property
@@ -57,7 +57,7 @@ class LinkedRod(ABC):
 
     @property
     def balances(self) -> bool:
-        """True if active power, dissipation and energy balance: not without twist moments."""
+        """True if the energy balance holds, which a dropped twist moment violates."""
         return not isinstance(self.system, DirectedRod) or self.system.transmitted != 0.0
 
     @property
@@ -89,13 +89,13 @@ class LinkedRod(ABC):
 
     def unknowns(self, x: State) -> Array:
         """Return the unknowns (n,) of a state: positions, and the multipliers that belong to it."""
-        return self.moving(x)[0]
+        return self.unknowns_and_rates(x)[0]
 
     def admissible(self, x: State) -> State:
-        """Return the shape of x with the lengths that its links have to have.
+        """Return the shape of x with the lengths that the model prescribes for its links.
 
-        Rigid links get theirs to round-off; extensible ones the lengths at which stretching and
-        tension balance, as a start from any other would begin with a burst of axial relaxation.
+        Rigid links get theirs to round-off. Extensible links get the lengths at which stretching
+        and tension balance: any other start would begin with a fast axial relaxation.
         """
         return admissible(self.system, x)
 
@@ -104,11 +104,11 @@ class LinkedRod(ABC):
         return self.positions(self.rates(x)[:-RATES])
 
     def rates(self, x: State) -> Array:
-        """Return the rates of change (n + 3,) of the unknowns and of their integrals at x."""
-        return self.moving(x)[1]
+        """Return the rates of change (n + 3,) at x of the unknowns and of three integrals."""
+        return self.unknowns_and_rates(x)[1]
 
-    def moving(self, x: State) -> tuple[Array, Array]:
-        """Return the unknowns (n,) of a state and their rates of change (n + 3,), at once."""
+    def unknowns_and_rates(self, x: State) -> tuple[Array, Array]:
+        """Return `unknowns` (n,) and `rates` (n + 3,) of a state at the cost of one of them."""
         unknowns = self._layout.with_multipliers(x)
         velocity = np.zeros(unknowns.size + RATES)
         rate_of_change(self.system, unknowns, velocity)
@@ -116,7 +116,7 @@ class LinkedRod(ABC):
 
     def jacobian(self, x: State) -> Array:
         """Return d rhs / dx, shape (size, size), exact."""
-        y, velocity = self.moving(x)
+        y, velocity = self.unknowns_and_rates(x)
         return rate_jacobian(self.equations, y, velocity[:-RATES])
 
     def linearised(self) -> tuple[Array, Array]:
@@ -131,10 +131,10 @@ class LinkedRod(ABC):
         return self._state_layout.displaced(along_x, along_y)
 
     def joint_angles(self, unknowns: Array) -> Array:
-        """Return the angles between neighbouring links (..., N) [rad], the clamp's axis the first.
+        """Return the angles between neighbouring links (..., N) of unknowns (..., n) [rad].
 
-        They are the angles in the unknowns (..., n), with signs and full turns, if joints unwrap,
-        and else between 0 and pi.
+        The first one is between the clamp's axis and the first link. Angles of unwrapped joints
+        have signs and full turns; others lie between 0 and pi.
         """
         by_node = self._layout.by_node(unknowns)
         return by_node[..., -1] if self.unwrapped else folded_angles(by_node[..., : self.dimension])
@@ -183,7 +183,7 @@ class LinkedRod(ABC):
         return straight(self.system)
 
     def straight_unknowns(self) -> Array:
-        """Return the integrator's vector in the straight state."""
+        """Return the unknowns (n,) of the straight state."""
         return self._straight_unknowns.copy()
 
     @cached_property
@@ -215,7 +215,7 @@ class LinkedRod(ABC):
         return self._state_layout.coordinates(nodes)
 
     def rotate(self, x: State, angle: float) -> State:
-        """Return the state turned about the axis by an angle [rad].
+        """Return the state rotated about the axis by an angle [rad].
 
         Raises
         ------
@@ -232,7 +232,7 @@ class LinkedRod(ABC):
         return self._state_layout.rotated(x, angle)
 
     def rotation_generator(self, x: State) -> State:
-        """Return the velocity of a unit rate of turning; 0 for models that are not turned."""
+        """Return the velocity of a unit rate of rotation; 0 without rotational symmetry."""
         if self.dimension == 3 and self.axisymmetric:
             return self._state_layout.rotation_generator(np.asarray(x))
         return np.zeros(self.size)

@@ -18,11 +18,12 @@ from undula.models.units import Units
 
 @dataclass(frozen=True)
 class Energetics:
-    """Energies and powers of a row of states, each of shape (m,), in the model's units.
+    """Energies and powers of m states, in the model's units.
 
     Attributes
     ----------
     bending_energy, stretching_energy : ndarray of shape (m,)
+        Elastic energies.
     active_power : ndarray of shape (m,)
         Power put in by the load.
     dissipation : ndarray of shape (m,)
@@ -35,7 +36,7 @@ class Energetics:
     dissipation: Array
 
     def part(self, chosen: slice) -> Self:
-        """Return those of the states of a slice."""
+        """Return the energies and powers of a slice of the states."""
         values = (getattr(self, field.name)[chosen] for field in fields(self))
         return type(self)(*values)
 
@@ -43,7 +44,8 @@ class Energetics:
 class Model(Protocol):
     """A model of a clamped body, frozen: a filament, a chain, or several of them.
 
-    Unknowns are vectors (n,) of positions and multipliers in the model's own order.
+    Unknowns are vectors (n,) of positions and multipliers in the model's own order. Values are in
+    the model's units, with time in T.
     """
 
     @property
@@ -56,7 +58,7 @@ class Model(Protocol):
 
     @property
     def axisymmetric(self) -> bool:
-        """True if a state turned about the axis moves like the state itself, turned."""
+        """True if rotations about the axis take motions to motions."""
 
     @property
     def extensible(self) -> bool:
@@ -64,7 +66,7 @@ class Model(Protocol):
 
     @property
     def balances(self) -> bool:
-        """True if active power, dissipation and energy balance: not without twist moments."""
+        """True if the energy balance holds, which a dropped twist moment violates."""
 
     @property
     def load(self) -> Load:
@@ -117,7 +119,7 @@ class Model(Protocol):
         """
 
     def straight_unknowns(self) -> Array:
-        """Return the integrator's vector in the straight state."""
+        """Return the unknowns (n,) of the straight state."""
 
     def rest(self) -> State:
         """Return the state in which nothing is bent: straight without natural curvature."""
@@ -126,16 +128,16 @@ class Model(Protocol):
         """Return the state near x that meets the model's constraints to round-off."""
 
     def rates(self, x: State) -> Array:
-        """Return the rates of change of the unknowns and of the integrals with them, at x.
+        """Return the rates of change at x of the unknowns and of three integrals.
 
         Returns
         -------
         ndarray of shape (n + 3,)
-            The last ones are the rate of turning [rad/T], the active power and the dissipation.
+            The last three are the rate of rotation [rad/T], the active power and the dissipation.
         """
 
-    def moving(self, x: State) -> tuple[Array, Array]:
-        """Return the integrator's vector at x and its rates of change, at once."""
+    def unknowns_and_rates(self, x: State) -> tuple[Array, Array]:
+        """Return `unknowns` (n,) and `rates` (n + 3,) of a state at the cost of one of them."""
 
     def rhs(self, x: State) -> State:
         """Return dx/dt, shape (size,) [L/T]."""
@@ -178,7 +180,7 @@ class Model(Protocol):
         """Return the same body made of another number of links; None if its links are the body."""
 
     def tangent_distance(self, x: State) -> float:
-        """Return the distance of x from straight, in the norm in which the integrator measures."""
+        """Return the distance of x from straight, in the integrator's norm of errors."""
 
     def energy(self, x: State) -> float:
         """Return the elastic energy."""
@@ -205,7 +207,7 @@ class Model(Protocol):
         """
 
     def rotate(self, x: State, angle: float) -> State:
-        """Return the state turned about the axis by an angle [rad].
+        """Return the state rotated about the axis by an angle [rad].
 
         Raises
         ------
@@ -214,7 +216,7 @@ class Model(Protocol):
         """
 
     def rotation_generator(self, x: State) -> State:
-        """Return the velocity of a unit rate of turning; 0 for models that are not turned."""
+        """Return the velocity of a unit rate of rotation; 0 without rotational symmetry."""
 
     def reflect(self, x: State) -> State:
         """Return the state reflected in the plane x = 0.
@@ -235,5 +237,5 @@ class Model(Protocol):
         """
 
 
-#: A start makes a state for a model.
+#: A start: a function that returns an initial state of a model.
 Start = Callable[[Model], State]

@@ -112,7 +112,7 @@ class Simulation:
             raise InputError(f"{shapes}; give {model.size} finite numbers")
         refuse_misfits(model.nodes(x), extensible=model.extensible)
         x = model.admissible(x)
-        unknowns, rates = model.moving(x)
+        unknowns, rates = model.unknowns_and_rates(x)
         speed = float(np.abs(model.positions(rates[:-RATES])).max())
         reach = schedule.atol + schedule.rtol * float(np.abs(x - model.straight()).max())
         step = reach / speed if speed > 0.0 else schedule.end * 1e-3

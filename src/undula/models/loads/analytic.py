@@ -71,7 +71,7 @@ class DensityLoad(Load):
     Parameters
     ----------
     force : float
-        Total compressive force F, finite, at least 0.
+        Total compressive force F [B/L^2 for a filament, K/L for a chain], finite, at least 0.
     """
 
     @property
@@ -106,7 +106,7 @@ class PointLoad(DensityLoad):
     Parameters
     ----------
     force : float
-        Force F [B/L^2], finite, at least 0.
+        Force F [B/L^2 for a filament, K/L for a chain], finite, at least 0.
     position : float
         Arc length [L], in (0, 1].
 
@@ -193,7 +193,7 @@ class LinearLoad(DensityLoad):
     Parameters
     ----------
     force : float
-        Total force F [B/L^2], finite, at least 0.
+        Total force F [B/L^2 for a filament, K/L for a chain], finite, at least 0.
     slope : float
         Slope in [-1, 1]: 0 for a uniform density, 1 for a density that vanishes at the clamp.
 

@@ -27,7 +27,7 @@ class PowerLoad(DensityLoad):
     Parameters
     ----------
     force : float
-        Total force F [B/L^2], finite, at least 0.
+        Total force F [B/L^2 for a filament, K/L for a chain], finite, at least 0.
     exponent : float
         Exponent p, finite, at least 0.
 

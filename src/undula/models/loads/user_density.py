@@ -57,7 +57,7 @@ class TableLoad(_GivenLoad):
     Parameters
     ----------
     force : float
-        Total force F [B/L^2], finite, at least 0.
+        Total force F [B/L^2 for a filament, K/L for a chain], finite, at least 0.
     s : sequence of float, shape (n,)
         Arc lengths [L], at least 2, increasing from 0 to 1; stored as a tuple.
     density : sequence of float, shape (n,)
@@ -90,7 +90,7 @@ class TableLoad(_GivenLoad):
                 f"TableLoad: density has {len(density)} values, where s has {len(s)};"
                 " give one at each arc length"
             )
-        object.__setattr__(self, "s", _covering(s))
+        object.__setattr__(self, "s", _arc_lengths(s))
         object.__setattr__(self, "density", density)
         _ = self._piecewise  # raises InputError for a total that is not positive
 
@@ -136,7 +136,7 @@ class ProfileLoad(_GivenLoad):
     Parameters
     ----------
     force : float
-        Total force F [B/L^2], finite, at least 0.
+        Total force F [B/L^2 for a filament, K/L for a chain], finite, at least 0.
     density : callable
         Takes arc lengths [L] as an array of shape (n,), returns the density at each of them, in
         any unit; it may be negative in places, but not in total. A feature narrower than 1/500 of
@@ -163,7 +163,7 @@ class ProfileLoad(_GivenLoad):
     kinks: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check the values, and fit the density unless that has been done."""
+        """Check the values and fit the density."""
         super().__post_init__()
         kinks = _numbers(self, "kinks")
         for i, kink in enumerate(kinks):
@@ -172,16 +172,15 @@ class ProfileLoad(_GivenLoad):
                     f"ProfileLoad: kinks[{i}] = {kink} has to be an arc length inside (0, 1)"
                 )
         object.__setattr__(self, "kinks", tuple(sorted(set(kinks))))
-        given_density = self.density
-        function = (
-            given_density.function if isinstance(given_density, _FittedDensity) else given_density
-        )
+        # The density of a load with another force, by `dataclasses.replace`, is fitted already.
+        fitted = self.density if isinstance(self.density, _FittedDensity) else None
+        function = self.density if fitted is None else fitted.function
         if not callable(function):
             raise InputError(
                 f"ProfileLoad: density is of type {type(function).__name__}; give a function of"
                 " arc length, or the points of a TableLoad"
             )
-        if not (isinstance(given_density, _FittedDensity) and given_density.kinks == self.kinks):
+        if fitted is None or fitted.kinks != self.kinks:
             piecewise = piecewise_density("ProfileLoad", *fitted_pieces(function, self.kinks))
             object.__setattr__(self, "density", _FittedDensity(function, self.kinks, piecewise))
 
@@ -209,8 +208,8 @@ def _numbers(load: DensityLoad, name: str) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
 
 
-def _covering(given: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the checked arc lengths of a table, with its ends rounded to 0 and 1."""
+def _arc_lengths(given: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the arc lengths of a table, checked and with ends of exactly 0 and 1."""
     if len(given) < 2:
         number = f"{len(given)} value{'s' * (len(given) != 1)}"
         raise InputError(f"TableLoad: s has {number}; give at least 2, from 0 to 1")
@@ -230,4 +229,5 @@ def _covering(given: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _snapped(s: float, end: float) -> float:
+    """Return s, or the end if s differs from it by round-off."""
     return end if abs(s - end) <= _END_ROUND_OFF else s

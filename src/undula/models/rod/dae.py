@@ -65,7 +65,7 @@ class RodFlow:
 
     @property
     def across(self) -> Any:
-        """True at the positions y that a state in the x-z plane has at 0, shape (n,)."""
+        """True at the y coordinates of nodes, which are 0 in the x-z plane, shape (n,)."""
         return self.layout.across
 
     def residual(self, y: Array, w: Array) -> Array:
@@ -135,7 +135,10 @@ class RodFlow:
         return np.asarray(y * np.tile(signs, self.system.joint.size))
 
     def displacements(self, y: Array) -> Array:
-        """Return an orthonormal basis (n, k) of small displacements that keep rigid lengths."""
+        """Return an orthonormal basis (n, k) of small displacements that keep links rigid.
+
+        Extensible links may be displaced in any way.
+        """
         moves, d, m = self.differential, int(self.system.dimension), self.layout.stride
         if self.system.extensible:
             return np.eye(y.size)[:, moves]

@@ -46,7 +46,7 @@ class Layout:
 
     @cached_property
     def across(self) -> Any:
-        """True at the coordinates y that a state in the x-z plane has at 0, shape (n,)."""
+        """True at the y coordinates of nodes, which are 0 in the x-z plane, shape (n,)."""
         entries = np.arange(self.size) % self.stride
         return entries == _Y if self.dimension == 3 else np.zeros(self.size, dtype=bool)
 

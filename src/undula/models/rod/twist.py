@@ -10,6 +10,8 @@ Newton's method solves:
 with the second difference d2, dalpha = 0 at the clamp, and no difference beyond the last joint.
 For a small twist stiffness it may have several solutions. Where the matrix is not that of a minimum
 of the energy, negative e' are left out, and corrections are halved until the energy falls.
+
+The vector y has eight numbers a node: position, tension, director and twist moment.
 """
 
 from typing import Any
@@ -46,7 +48,7 @@ _STEP_TOLERANCE = 1e-9
 
 @kernel
 def carry_directors(system: Any, y: Any, t: Any, turning: Any, stiffness: Any) -> Any:
-    """Write the directors of the moments in y to y; return the energy of the joints.
+    """Write to y the directors that follow from its moments; return the energy of the joints.
 
     The derivatives e and e' (N,) of the joints by a rotation of their directors are written to
     `turning` and `stiffness`.
@@ -87,7 +89,7 @@ def twist_energy(system: Any, y: Any) -> Any:
 
 @kernel
 def newton_turns(system: Any, y: Any, turning: Any, stiffness: Any, turn: Any) -> Any:
-    """Write Newton's correction to turn (N,); return False where the energy is not convex."""
+    """Write Newton's correction of the angles to turn (N,); False if the energy is not convex."""
     n, twist_compliance, convex = system.joint.shape[0], system.compliance * system.link, True
     lower, diagonal, upper = np.ones(n), np.full(n, -2.0), np.ones(n)
     diagonal[0], upper[0], diagonal[n - 1], turn[0] = 1.0, 0.0, -1.0, 0.0
@@ -102,7 +104,7 @@ def newton_turns(system: Any, y: Any, turning: Any, stiffness: Any, turn: Any) -
 
 @kernel
 def apply_turns(system: Any, y: Any, turn: Any, before: Any, part: Any) -> None:
-    """Set the moments in y to those before (N,) plus a part of the correction of the angles."""
+    """Set the moments in y to `before` (N,), changed by a part of the correction of the angles."""
     for j in range(before.shape[0] - 1):
         change = (turn[j + 1] - turn[j]) / (system.compliance * system.link)
         y[8 * j + 7] = before[j] + part * change
