@@ -204,10 +204,10 @@ def step(
     """
     from undula.app.commands.run_job import reads_of
     from undula.app.commands.step import RampJob, plan, run_ramp
-    from undula.inputs.ramp_input import read_step_input
+    from undula.inputs.ramp_input import read_ramp_input
 
     seconds = seconds_of(budget)
-    wanted = read_step_input(file, changes or ())
+    wanted = read_ramp_input(file, changes or ())
     series = plan(wanted, along, back=down, kick=kick, seed=seed)
     result = (out or Path("results") / (file.stem if file else "step")) / "steps.nc"
     reads = reads_of(file, wanted)

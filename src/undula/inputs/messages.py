@@ -78,6 +78,7 @@ def _place(details: ErrorDetails, known: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _sentence(details: ErrorDetails, known: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the message on one mistake."""
     kind, value, place = details["type"], details["input"], _place(details, known)
     if kind == CONFLICT:
         return details["msg"]
@@ -88,7 +89,7 @@ def _sentence(details: ErrorDetails, known: Mapping[str, Mapping[str, str]]) -> 
         return f"{name} is not a known key; {_cure_of_key(table, key, known)}"
     if kind == IDLE_KEY:
         return _idle_key(table, key, value, details["ctx"])
-    # In a list of numbers a single entry is wrong.
+    # After table and key, or table, list, index and key, follows the index in a list of numbers.
     inner = details["loc"][4 if "." in table else 2 :]
     entry = "".join(f"[{part}]" for part in inner if isinstance(part, int))
     verdict = _verdict(kind, value)
@@ -96,6 +97,7 @@ def _sentence(details: ErrorDetails, known: Mapping[str, Mapping[str, str]]) -> 
 
 
 def _wrong_table(table: str, value: Any, known: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the message on an outermost name that is no table or has a value of another type."""
     if table in known:
         return f"{_name(table)} = {_show(value)} is not a table; write [{table}] and its keys below"
     homes = [name for name in _outermost(known) if table in known[name]]
@@ -108,6 +110,7 @@ def _wrong_table(table: str, value: Any, known: Mapping[str, Mapping[str, str]])
 
 
 def _outermost(known: Iterable[str]) -> list[str]:
+    """Return the tables that are not inside another one."""
     return [name for name in known if "." not in name]
 
 
@@ -122,6 +125,7 @@ def _cure_of_key(table: str, key: str, known: Mapping[str, Mapping[str, str]]) -
 
 
 def _idle_key(table: str, key: str, value: Any, rule: Mapping[str, Any]) -> str:
+    """Return the message on a key without meaning for the value of another key, its chooser."""
     chooser = f"{table}.{rule['chooser']}"
     use = _listed([repr(choice) for choice in rule["values"]], "or")
     return (
@@ -131,6 +135,7 @@ def _idle_key(table: str, key: str, value: Any, rule: Mapping[str, Any]) -> str:
 
 
 def _verdict(kind: str, value: Any) -> str:
+    """Return the mistake as a predicate, from pydantic's name of its kind."""
     if isinstance(value, float) and not math.isfinite(value):
         return "is not a finite number"
     if kind.startswith(("greater_than", "less_than")):

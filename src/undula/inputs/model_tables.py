@@ -153,6 +153,7 @@ class ModelTable(Table):
     @model_validator(mode="before")
     @classmethod
     def _beads_are_round(cls, given: Any) -> Any:
+        """Make the drag ratio of a chain 1 by default."""
         if isinstance(given, Mapping) and given.get("kind") == "chain":
             return {"drag_ratio": 1.0, **given}
         return given
@@ -167,7 +168,8 @@ class ModelTable(Table):
         return self
 
     @model_validator(mode="after")
-    def _directors_have_room(self) -> Self:
+    def _directors_are_possible(self) -> Self:
+        """Refuse the values with which a filament that needs directors cannot be made."""
         directors = self.natural_curvature, self.bending_ratio
         if self.kind != "filament" or directors == ((0.0, 0.0), 1.0):
             return self  # without directors, or with a default that needs none
@@ -206,13 +208,13 @@ class LoadTable(Table):
         Total force F, at least 0. By default 75 B/L^2 for a filament, and the corresponding
         75/N K/L for a chain.
     position
-        Arclength s_a of a point load [L], above 0 and at most 1.
+        Arc length s_a of a point load [L], above 0 and at most 1.
     slope
         Slope alpha of a linear load, from -1 to 1: density F [1 + alpha (2 s - 1)].
     exponent
         Exponent p of a power load, at least 0: density F (p + 1) s^p.
     s, density
-        Points of a table load: arclengths [L], increasing from 0 to 1, and the density there in
+        Points of a table load: arc lengths [L], increasing from 0 to 1, and the density there in
         any unit, linear in between and scaled to the total; required for ``table``.
     beads
         Numbers of the beads of a chain that share the force equally, from 1 at the base, or

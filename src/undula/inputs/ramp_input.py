@@ -1,4 +1,4 @@
-"""Input of a quasi-static ramp: that of a run which settles, unless the input sets an end."""
+"""Input of a quasi-static ramp: that of a run, until the motion has settled by default."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -9,7 +9,7 @@ from undula.inputs.overrides import apply_overrides, read_toml
 _SETTLE = 'time.until="settled"'
 
 
-def read_step_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunInput:
+def read_ramp_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunInput:
     """Read the input of a quasi-static ramp.
 
     Parameters

@@ -75,6 +75,8 @@ def with_argument_check(
 ) -> Callable[..., Any]:
     """Return a function that checks its arguments and then calls a kernel.
 
+    It is compiled from generated source, as numba needs the names of all arguments.
+
     Parameters
     ----------
     function : callable
@@ -112,7 +114,7 @@ def with_argument_check(
 def _lines(
     name: str, arguments: list[str], sizes: str, where: Callable[..., Any] | None
 ) -> Iterator[str]:
-    """Yield the statements of a check."""
+    """Yield the statements that check the arguments."""
     defined = set(arguments)
 
     def unless(condition: str, culprit: str) -> str:

@@ -81,6 +81,7 @@ def _acquired(lock: Path) -> int | None:
 
 
 def _is_still_there(descriptor: int, lock: Path) -> bool:
+    """Return True if the name of the lock still belongs to the opened file."""
     try:
         return os.path.samestat(os.fstat(descriptor), os.lstat(lock))
     except FileNotFoundError:
@@ -88,6 +89,7 @@ def _is_still_there(descriptor: int, lock: Path) -> bool:
 
 
 def _mark(descriptor: int) -> None:
+    """Write the mark of undula into a new lock file."""
     if os.fstat(descriptor).st_size == 0:
         os.write(descriptor, _MARK)
 

@@ -29,7 +29,7 @@ from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.last_period import SHAPES
 from undula.app.cli import main
 from undula.app.commands import step as stepping
-from undula.inputs.ramp_input import read_step_input
+from undula.inputs.ramp_input import read_ramp_input
 from undula.inputs.ranges import parse_steps
 from undula.models.chain import Chain
 from undula.models.filament import Filament
@@ -145,12 +145,12 @@ def test_joints_that_wind_up_are_not_stepped() -> None:
 
 
 def test_steps_settle_unless_the_input_gives_a_time() -> None:
-    assert read_step_input().time.until == "settled"
-    assert read_step_input(None, ["time.limit=3"]).time.limit == 3.0
-    assert read_step_input(None, ["time.until=0.5"]).time.until == 0.5
+    assert read_ramp_input().time.until == "settled"
+    assert read_ramp_input(None, ["time.limit=3"]).time.limit == 3.0
+    assert read_ramp_input(None, ["time.until=0.5"]).time.until == 0.5
     Path("timed.toml").write_text("[time]\nuntil = 2.0\n")
-    assert read_step_input(Path("timed.toml")).time.until == 2.0
-    chain = read_step_input(None, ["model.kind=chain", "model.links=3"])
+    assert read_ramp_input(Path("timed.toml")).time.until == 2.0
+    chain = read_ramp_input(None, ["model.kind=chain", "model.links=3"])
     assert (chain.time.until, chain.time.limit) == ("settled", 90.0)
 
 
@@ -381,7 +381,7 @@ def test_what_is_stored_is_read_bit_for_bit(series: xr.Dataset, folder: Path) ->
     steps = stored_steps(series)
     assert all(isinstance(step.verdict, str) and type(step.value) is float for step in steps)
     job_series = stepping.plan(
-        read_step_input(None, [TWO[1], TWO[3]]), THROUGH[1], back=True, kick=1e-3, seed=1
+        read_ramp_input(None, [TWO[1], TWO[3]]), THROUGH[1], back=True, kick=1e-3, seed=1
     )
     stepping.write_ramp(Path("copy.nc"), job_series, steps)
     assert Path("copy.nc").read_bytes() == (folder / "steps.nc").read_bytes()
