@@ -1,8 +1,9 @@
 """Metadata of a store, checked against their digest before Zarr reads them.
 
 Zarr looks up codecs by the names in the metadata, and some codecs run code: only those that undula
-and xarray write are allowed. The second format of Zarr stores the metadata twice, in one common
-file and in a file of each array; one valid copy is enough.
+and xarray write are allowed. undula writes Zarr's format 2, which stores the metadata twice: in one
+consolidated file, and in single files of the group and of each array. One valid copy is enough.
+Format 3 is read only: other software may have stored a copy in it.
 """
 
 import json
@@ -20,13 +21,14 @@ from undula.storage.digests import digest_of
 DIGEST, ARRAYS = "undula_digest", "undula_arrays"
 #: Attributes of the root that the digest covers; others may be added.
 ATTRIBUTES = ("study", "versions", "software", "units", "load", "undula_format")
-_GROUP, _ATTRIBUTES, _ARRAY, _ALL = ".zgroup", ".zattrs", ".zarray", ".zmetadata"
-_THIRD = "zarr.json"
-_NAMES = (_GROUP, _ATTRIBUTES, _ARRAY, _ALL, _THIRD)
+#: Metadata files of format 2, the last one consolidated, and of format 3.
+_GROUP, _ATTRIBUTES, _ARRAY, _CONSOLIDATED = ".zgroup", ".zattrs", ".zarray", ".zmetadata"
+_FORMAT_3 = "zarr.json"
+_NAMES = (_GROUP, _ATTRIBUTES, _ARRAY, _CONSOLIDATED, _FORMAT_3)
 _CODECS = {"blosc", "zstd", "crc32", "vlen-utf8"}
-_CODECS_OF_THIRD = {"bytes", "blosc", "zstd", "crc32c", "vlen-utf8"}
+_CODECS_OF_FORMAT_3 = {"bytes", "blosc", "zstd", "crc32c", "vlen-utf8"}
 _TYPES = re.compile(r"[<|][fi][1248]|\|b1|<U\d{1,4}|\|O")
-_TYPES_OF_THIRD = {"float64", "int64", "int32", "int8", "bool", "string", "fixed_length_utf32"}
+_TYPES_OF_FORMAT_3 = {"float64", "int64", "int32", "int8", "bool", "string", "fixed_length_utf32"}
 
 Content = Mapping[str, Any]
 
@@ -55,22 +57,22 @@ class Metadata:
         files = {name: json.dumps(part, indent=2).encode() for name, part in self.content.items()}
         if self.format == 2:
             together = {"metadata": self.content, "zarr_consolidated_format": 1}
-            files[_ALL] = json.dumps(together, indent=2).encode()
+            files[_CONSOLIDATED] = json.dumps(together, indent=2).encode()
         return files
 
     @property
     def attributes(self) -> Mapping[str, Any]:
         """The attributes of the root."""
         if self.format == 3:
-            return self.content[_THIRD].get("attributes", {})  # type: ignore[no-any-return]
+            return self.content[_FORMAT_3].get("attributes", {})  # type: ignore[no-any-return]
         return self.content.get(_ATTRIBUTES, {})  # type: ignore[no-any-return]
 
     def array(self, name: str) -> Mapping[str, Any]:
-        """Return the metadata of an array; for the second format of Zarr."""
+        """Return the metadata of an array, for format 2."""
         return self.content[f"{name}/{_ARRAY}"]  # type: ignore[no-any-return]
 
     def dims(self, name: str) -> tuple[str, ...]:
-        """Return the dimensions of an array by name; for the second format of Zarr."""
+        """Return the names of the dimensions of an array, for format 2."""
         return tuple(self.content[f"{name}/{_ATTRIBUTES}"]["_ARRAY_DIMENSIONS"])
 
 
@@ -81,7 +83,7 @@ def is_metadata(key: str) -> bool:
 
 def is_store(path: Path) -> bool:
     """Return True if a folder is a store of any content."""
-    return any((path / name).is_file() for name in (_GROUP, _ALL, _THIRD))
+    return any((path / name).is_file() for name in (_GROUP, _CONSOLIDATED, _FORMAT_3))
 
 
 def seal_of(content: Content) -> dict[str, Any]:
@@ -99,16 +101,17 @@ def read_metadata(path: Path) -> Metadata:
         The metadata are damaged or name a type or codec that undula does not write, or the folder
         is not a store.
     """
-    if (path / _THIRD).exists():
-        return _checked_codecs(path, Metadata(_third(path), 3, checked=False))
-    copies = [copy for copy in (_together(path), single_files(path)) if _is_group(copy)]
+    if (path / _FORMAT_3).exists():
+        return _checked_codecs(path, Metadata(_format_3_files(path), 3, checked=False))
+    copies = [copy for copy in (_consolidated(path), single_files(path)) if _is_group(copy)]
     sealed = [copy for copy in copies if _is_sealed(copy)]
     if not copies:
         raise _no_store(path)
     if not sealed and any(DIGEST in copy.get(_ATTRIBUTES, {}) for copy in copies):
         raise InputError(
-            f"what {path} says of itself is damaged; take the files {_ALL} and {_ATTRIBUTES} from a"
-            " copy, or make the study again with undula sweep and another --out"
+            f"what {path} says of itself is damaged; take the files {_CONSOLIDATED} and"
+            f" {_ATTRIBUTES} from a copy, or make the study again with undula sweep and another"
+            " --out"
         )
     return _checked_codecs(path, Metadata((sealed or copies)[0], 2, checked=bool(sealed)))
 
@@ -128,30 +131,33 @@ def mend_metadata(path: Path, metadata: Metadata) -> None:
     InputError
         The folder cannot be written or is full.
     """
-    whole = {True: _is_sealed(_together(path)), False: _is_sealed(single_files(path))}
+    consolidated_is_valid = _is_sealed(_consolidated(path))
+    singles_are_valid = _is_sealed(single_files(path))
     for name, image in metadata.files.items():
-        if not whole[name == _ALL]:
+        if not (consolidated_is_valid if name == _CONSOLIDATED else singles_are_valid):
             write_whole(path / name, image, overwrite=True)
 
 
 def single_files(path: Path) -> dict[str, Any]:
-    """Return the metadata in the files of single arrays, as far as they can be read."""
+    """Return the metadata in the single files of group and arrays, as far as they can be read."""
     places = (path, *(place for place in sorted(path.glob("*")) if (place / _ARRAY).exists()))
     files = [place / name for place in places for name in (_GROUP, _ATTRIBUTES, _ARRAY)]
     read = {file.relative_to(path).as_posix(): _json(file) for file in files if file.is_file()}
     return {key: part for key, part in read.items() if part is not None}
 
 
-def _together(path: Path) -> dict[str, Any]:
-    whole = _json(path / _ALL)
+def _consolidated(path: Path) -> dict[str, Any]:
+    """Return the metadata in the consolidated file; empty if it cannot be read."""
+    whole = _json(path / _CONSOLIDATED)
     content = whole.get("metadata") if whole else None
     return content if isinstance(content, dict) else {}
 
 
-def _third(path: Path) -> dict[str, Any]:
-    files = [path / _THIRD, *sorted(path.glob(f"*/{_THIRD}"))]
+def _format_3_files(path: Path) -> dict[str, Any]:
+    """Return the metadata in the files of format 3, as far as they can be read."""
+    files = [path / _FORMAT_3, *sorted(path.glob(f"*/{_FORMAT_3}"))]
     read = {file.relative_to(path).as_posix(): _json(file) for file in files}
-    if read[_THIRD] is None:
+    if read[_FORMAT_3] is None:
         raise _no_store(path)
     return {key: part for key, part in read.items() if part is not None}
 
@@ -173,6 +179,7 @@ def _is_group(content: Content) -> bool:
 
 
 def _is_sealed(content: Content) -> bool:
+    """Return True if the metadata carry their own digest."""
     attributes = content.get(_ATTRIBUTES, {})
     names = attributes.get(ARRAYS)
     return isinstance(names, list) and attributes.get(DIGEST) == _digest(content, names)
@@ -185,6 +192,7 @@ def _digest(content: Content, names: list[Any]) -> str:
 
 
 def _checked_codecs(path: Path, metadata: Metadata) -> Metadata:
+    """Return the metadata; refuse types and codecs that undula does not write."""
     for name in _foreign(metadata):
         raise InputError(
             f"{path} asks for {name}, which undula does not write and does not run; give a folder"
@@ -208,7 +216,7 @@ def _foreign(metadata: Metadata) -> Iterator[str]:
                 yield f"the type {node['dtype']!r}"
         elif metadata.format == 3 and node.get("node_type") == "array":
             yield from _not_in(
-                _CODECS_OF_THIRD,
+                _CODECS_OF_FORMAT_3,
                 "the codec",
                 [
                     _name(codec, "name")
@@ -216,7 +224,9 @@ def _foreign(metadata: Metadata) -> Iterator[str]:
                     for codec in node.get(key) or ()
                 ],
             )
-            yield from _not_in(_TYPES_OF_THIRD, "the type", [_name(node.get("data_type"), "name")])
+            yield from _not_in(
+                _TYPES_OF_FORMAT_3, "the type", [_name(node.get("data_type"), "name")]
+            )
 
 
 def _not_in(allowed: set[str], kind: str, names: list[str]) -> Iterator[str]:
