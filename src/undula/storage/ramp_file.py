@@ -15,6 +15,7 @@ from undula.analysis.observables.shapes import Range
 from undula.analysis.ramps.ramp import Ramp, Step
 from undula.errors import InputError
 from undula.models.model import Model
+from undula.storage.differences import difference
 from undula.storage.result_kinds import Kind
 from undula.storage.run_file import read_result, write_result
 
@@ -54,14 +55,14 @@ class Series:
         Model and load in a few words, without the varied parameter.
     model
         The model that the input describes.
-    course
+    ramp
         The values of the parameter in order, with kick and seed.
     """
 
     input: Mapping[str, Any]
     load: str
     model: Model
-    course: Ramp
+    ramp: Ramp
 
 
 def write_ramp(path: Path, series: Series, steps: Sequence[Step]) -> None:
@@ -104,11 +105,27 @@ def load_ramp(path: Path | str) -> xr.Dataset:
         The file is missing, unreadable, cut short or not written by ``undula step``; or other
         software has stored it without some of its variables.
 
+    Warns
+    -----
+    StoredWarning
+        Other software has stored the file, which carries no checksum.
+
     Examples
     --------
-    >>> import undula
-    >>> stored = undula.load_ramp("results/steps.nc")  # doctest: +SKIP
-    >>> stored["verdict"].values  # doctest: +SKIP
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import undula as un
+    >>> from undula.analysis.ramps.ramp import Ramp, ramp
+    >>> from undula.analysis.run_settings import Schedule
+    >>> from undula.storage.ramp_file import Series, write_ramp
+    >>> model, values = un.Chain(2, un.TipLoad(1.0)), Ramp("load.force", (1.0, 2.0))
+    >>> steps = list(ramp(model, values, un.straight(model), Schedule(until=0.1, samples=20)))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "steps.nc"
+    ...     write_ramp(file, Series({}, "tip force", model, values), steps)
+    ...     stored = un.load_ramp(file)
+    >>> stored["value"].values
+    array([1., 2.])
     """
     stored = read_result(Path(path), STEPS)
     missing = [name for name in _variables() if name not in stored]
@@ -180,11 +197,11 @@ def refuse_another_series(path: Path, stored: xr.Dataset, series: Series) -> Non
             " go on with that version, or start afresh with --overwrite"
         )
     for name in ("input", "options"):
-        difference = _difference(json.loads(present[name]), json.loads(wanted[name]))
-        if difference is not None:
+        differs = difference(json.loads(present[name]), json.loads(wanted[name]))
+        if differs is not None:
             raise InputError(
-                f"{path} holds steps of another series, {difference}; give another --out, or start"
-                " afresh with --overwrite"
+                f"{path} holds steps of another series, with {differs}; give another --out, or"
+                " start afresh with --overwrite"
             )
 
 
@@ -193,21 +210,21 @@ def _attributes(series: Series) -> dict[str, str]:
     versions = {"python": platform.python_version()} | versions
     return {
         "input": json.dumps(series.input),
-        "options": json.dumps(_options(series.course)),
+        "options": json.dumps(_options(series.ramp)),
         "versions": json.dumps(versions),
-        "parameter": series.course.parameter,
+        "parameter": series.ramp.parameter,
         "load": series.load,
         "units": json.dumps(series.model.units.names()),
         "undula_format": STEPS.format,
     }
 
 
-def _options(course: Ramp) -> dict[str, Any]:
+def _options(ramp: Ramp) -> dict[str, Any]:
     """Return the values of a ramp in plain JSON types, under the names of the options."""
-    first, last, count = course.values[0], course.values[-1], len(course.values)
+    first, last, count = ramp.values[0], ramp.values[-1], len(ramp.values)
     # Without the single values, since an attribute has to be short.
-    along = f"{course.parameter} from {first!r} to {last!r}, {count} values"
-    return {"along": along, "down": course.back, "kick": course.kick, "seed": course.seed}
+    along = f"{ramp.parameter} from {first!r} to {last!r}, {count} values"
+    return {"along": along, "down": ramp.back, "kick": ramp.kick, "seed": ramp.seed}
 
 
 def _columns(field: Field[Any], steps: Sequence[Step]) -> Iterator[tuple[str, Any]]:
@@ -233,18 +250,3 @@ def _read_column(field: Field[Any], stored: xr.Dataset) -> Sequence[Any]:
         return [Range(*values) for values in zip(*bounds, strict=True)]
     values = stored[field.name].values
     return list(values) if field.name in _SHAPED else list(values.tolist())
-
-
-def _difference(
-    stored: Mapping[str, Any], wanted: Mapping[str, Any], prefix: str = ""
-) -> str | None:
-    """Return in words the first key whose values differ; None if all are equal."""
-    for key in dict.fromkeys([*wanted, *stored]):
-        old, new = stored.get(key), wanted.get(key)
-        if isinstance(old, Mapping) and isinstance(new, Mapping):
-            inner = _difference(old, new, f"{prefix}{key}.")
-            if inner is not None:
-                return inner
-        elif old != new:
-            return f"with {prefix}{key} = {json.dumps(old)} instead of {json.dumps(new)}"
-    return None

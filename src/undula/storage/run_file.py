@@ -21,6 +21,7 @@ import xarray as xr
 from undula.errors import InputError
 from undula.storage.atomic import write_whole
 from undula.storage.digests import digest_of_arrays
+from undula.storage.hdf5_bytes import hdf5_bytes
 from undula.storage.result_kinds import (
     RUN,
     Kind,
@@ -40,7 +41,6 @@ _SAVED = "saved_"
 _DIGEST = "sha256"
 #: Attributes of the root that a checkpoint belongs to.
 _BELONGS_TO = ("input", "versions", "summary")
-_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 def write_run(
@@ -121,23 +121,36 @@ def load_result(path: Path | str) -> xr.Dataset:
     Parameters
     ----------
     path
-        A file written by `write_run`.
+        A file written by ``undula run``, or a Zarr store in which other software has stored it.
 
     Returns
     -------
     xarray.Dataset
-        The root group, in memory; the file is closed again.
+        The root group, in memory; docs/output.md lists its variables.
 
     Raises
     ------
     InputError
         The file is missing, unreadable, cut short, or not a result file of undula.
 
+    Warns
+    -----
+    StoredWarning
+        Other software has stored the file, which carries no checksum.
+
     Examples
     --------
-    >>> import undula
-    >>> stored = undula.load_result("results/spinning/run.nc")  # doctest: +SKIP
-    >>> stored["tip_radius"].max()  # doctest: +SKIP
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import undula as un
+    >>> from undula.storage.run_file import write_run
+    >>> model = un.Filament(4, load=un.TipLoad(0.0))
+    >>> run = un.integrate(model, un.planar(model, 0.1), until=0.001, samples=3)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_run(Path(folder) / "run.nc", un.dataset_of(run), checkpoint={})
+    ...     stored = un.load_result(Path(folder) / "run.nc")
+    >>> stored["nodes"].dims
+    ('time', 'node', 'axis')
     """
     return _read(Path(path), RUN)
 
@@ -222,7 +235,7 @@ def _encoding(variable: xr.Variable) -> dict[str, Any]:
 def _read(path: Path, kind: Kind, group: str | None = None) -> xr.Dataset:
     if group is None and is_store(path):
         return _read_folder(path, kind)
-    content = _read_bytes(path, kind)
+    content = hdf5_bytes(path, kind)
     state = condition(content)
     if state is Condition.DAMAGED:
         raise damaged(path, kind)
@@ -273,21 +286,3 @@ def _opened(content: bytes, group: str | None) -> xr.Dataset:
         mask_and_scale=False,
         decode_times=False,
     )
-
-
-def _read_bytes(path: Path, kind: Kind) -> bytes:
-    try:
-        with path.open("rb") as file:
-            signature = file.read(len(_HDF5_SIGNATURE))
-            if signature == _HDF5_SIGNATURE:
-                return signature + file.read()
-    except FileNotFoundError:
-        raise InputError(f"there is no result file {path}; check the name") from None
-    except OSError as error:
-        reason = error.strerror or error
-        raise InputError(
-            f"cannot read the result file {path} ({reason}); give a readable result file"
-        ) from error
-    if signature and _HDF5_SIGNATURE.startswith(signature):
-        raise damaged(path, kind)
-    raise InputError(f"{path} is not a NetCDF4 file; give a result file written by {kind.command}")

@@ -10,8 +10,9 @@ class StoredWarning(UserWarning):
     Examples
     --------
     >>> import warnings
-    >>> import undula
-    >>> warnings.simplefilter("error", undula.StoredWarning)  # doctest: +SKIP
+    >>> import undula as un
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", un.StoredWarning)  # unchecked results are refused here
     """
 
 

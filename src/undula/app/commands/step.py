@@ -120,10 +120,10 @@ def run_ramp(job: RampJob, *, budget: float, as_json: bool) -> int:
         The parameter has no thresholds, the folder cannot be written, or the file holds another
         ramp.
     """
-    if job.with_thresholds and job.series.course.parameter != FORCE:
+    if job.with_thresholds and job.series.ramp.parameter != FORCE:
         raise InputError(
             f"--thresholds are values of {FORCE}; step along that, or leave them out for"
-            f" {job.series.course.parameter}"
+            f" {job.series.ramp.parameter}"
         )
     end = time.monotonic() + budget
     figure = beside(job.result, ".png")
@@ -162,19 +162,19 @@ def _compute(
     job: RampJob, steps: list[Step], budget: float, interrupted: Callable[[], bool]
 ) -> str:
     """Append the missing steps within the budget; return the status of the answer."""
-    series, targets, before = job.series, job.series.course.targets, len(steps)
-    first = series.course.models(series.model)[0]
+    series, targets, before = job.series, job.series.ramp.targets, len(steps)
+    first = series.ramp.models(series.model)[0]
     start = first.straight() if steps else build_start(job.wanted, first)
     save = _Saver(job)
     ending = "done"
     try:
         with (
-            stepped("stepping", series.course.parameter, before, len(targets)) as show,
+            stepped("stepping", series.ramp.parameter, before, len(targets)) as show,
             compilation_announced(notice),
         ):
             for step in ramp(
                 series.model,
-                series.course,
+                series.ramp,
                 start,
                 build_schedule(job.wanted),
                 before=tuple(steps),
@@ -267,7 +267,7 @@ def _report_failures(job: RampJob, status: str, steps: Sequence[Step]) -> bool:
             f"{len(failed)} of {len(steps)} steps failed, the first at {failed[0].value:.6g}"
             f" ({failed[0].cause}); each of the next began where the one before had come to"
         )
-    total = len(job.series.course.targets)
+    total = len(job.series.ramp.targets)
     if status != "done":
         cause = "interrupted" if status == "interrupted" else "out of its budget of time"
         notice(

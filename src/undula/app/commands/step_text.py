@@ -40,11 +40,11 @@ def step_answer(
     """
     changes = regime_changes(steps)
     return {
-        "parameter": series.course.parameter,
+        "parameter": series.ramp.parameter,
         "load": series.load,
         "units": series.model.units.names(),
         "steps": [_record(step) for step in steps],
-        "missing": len(series.course.targets) - len(steps),
+        "missing": len(series.ramp.targets) - len(steps),
         "regimes": [asdict(regime) for regime in regimes(steps)],
         "changes": [asdict(change) for change in changes],
         "hysteresis": [asdict(interval) for interval in hysteresis(steps)],
@@ -56,7 +56,7 @@ def step_answer(
 
 def step_text(series: Series, answer: JsonAnswer) -> str:
     """Return regimes, hysteresis, thresholds and files, one in each line."""
-    course, parameter, units = series.course, answer["parameter"], series.model.units
+    course, parameter, units = series.ramp, answer["parameter"], series.model.units
     back = " and back" if course.back else ""
     count = f"{len(answer['steps'])} of {len(course.targets)} steps, {answer['status']}"
     interval = f"{parameter} from {course.values[0]:.6g} to {course.values[-1]:.6g}{back}"
