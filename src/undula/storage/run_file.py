@@ -136,7 +136,7 @@ def load_result(path: Path | str) -> xr.Dataset:
     Warns
     -----
     StoredWarning
-        Other software has stored the file, which carries no checksum.
+        The file carries no checksum, as one that other software has stored.
 
     Examples
     --------

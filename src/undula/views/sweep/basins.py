@@ -14,6 +14,7 @@ from matplotlib.path import Path
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.views.common import style
+from undula.views.common.renamed_keyword import renamed_keyword
 from undula.views.common.verdict_styles import look_of, ordered
 from undula.views.sweep.axes import (
     Border,
@@ -33,6 +34,7 @@ _FILLED, _WIDEST = 0.8, 40.0
 _CORNERS = 96
 
 
+@renamed_keyword("borders", "boundaries")
 def basin_diagram(
     basins: xr.Dataset, boundaries: Sequence[Border] = (), *, title: str | None = None
 ) -> Figure:

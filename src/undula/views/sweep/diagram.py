@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
 
 from undula.views.common import style
+from undula.views.common.renamed_keyword import renamed_keyword
 from undula.views.common.verdict_styles import look_of, ordered
 from undula.views.sweep.axes import (
     Border,
@@ -47,6 +48,7 @@ _COLOURS = "viridis"
 _DECADE = 10.0
 
 
+@renamed_keyword("borders", "boundaries")
 def phase_diagram(
     store: xr.Dataset,
     boundaries: Sequence[Border] = (),

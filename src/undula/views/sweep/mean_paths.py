@@ -17,6 +17,7 @@ from matplotlib.transforms import Affine2D
 from undula.arrays import Array
 from undula.errors import InputError
 from undula.views.common import style
+from undula.views.common.renamed_keyword import renamed_keyword
 from undula.views.sweep.axes import (
     Border,
     diagram_on,
@@ -45,6 +46,7 @@ _AT_REST = 1e-3
 _PALE, _DARK = 0.82, 0.05
 
 
+@renamed_keyword("borders", "boundaries")
 def mean_paths(
     store: xr.Dataset, boundaries: Sequence[Border] = (), *, title: str | None = None
 ) -> Figure:

@@ -16,6 +16,7 @@ from undula.analysis.observables.shapes import transverse
 from undula.arrays import Array
 from undula.schema.sweep_axes import axes_of
 from undula.views.common import style
+from undula.views.common.renamed_keyword import renamed_keyword
 from undula.views.sweep.axes import Border
 from undula.views.sweep.page_script import FRAME, SCRIPT
 from undula.views.sweep.page_traces import border_traces, dot_traces, layout, plain
@@ -37,6 +38,7 @@ _SHADES = 24
 _NO_FIGURES = ("status", "shapes", "shape_times")
 
 
+@renamed_keyword("borders", "boundaries")
 def phase_page(
     store: xr.Dataset,
     boundaries: Sequence[Border] = (),
