@@ -22,17 +22,17 @@ class InputError(ValueError):
 
 
 def is_number(value: Any) -> bool:
-    """Return whether a value is a finite real number.
+    """Return True for a finite real number.
 
     Parameters
     ----------
     value : object
-        Any value; booleans and texts are no numbers.
+        Any value; booleans and texts are not numbers.
 
     Returns
     -------
     bool
-        True for a finite real number.
+        False for any other value, infinity and NaN included.
     """
     if not isinstance(value, Real) or isinstance(value, bool):
         return False

@@ -8,7 +8,7 @@ import numpy as np
 from undula.analysis.ramps.ramp import MOST_STEPS
 from undula.errors import InputError
 
-#: Most points of a range; more are taken for a typing error.
+#: Largest number of points of a range; more count as a typing error.
 _MOST_NUMBERS = 1_000_000
 
 

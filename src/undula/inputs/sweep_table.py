@@ -21,7 +21,7 @@ AxisValues = Annotated[
 _Amplitude = Annotated[float, Field(gt=0.0, le=math.pi)]
 Amplitudes = Annotated[tuple[_Amplitude, _Amplitude], Field(strict=False), PlainSerializer(list)]
 
-#: Most points of a sweep; more are taken for a typing error.
+#: Largest number of points of a sweep; more count as a typing error.
 MOST_POINTS = 1_000_000
 
 

@@ -80,7 +80,7 @@ def entry(
     ------
     ValueError
         Raised by the decorated function if an argument does not fit the declaration, and by the
-        decorator if `sizes` is no declaration.
+        decorator if `sizes` is not a declaration.
     """
 
     def compiled(function: Callable[..., Any]) -> Any:

@@ -55,7 +55,7 @@ def parse_declaration(sizes: str) -> tuple[DeclaredArray, ...]:
     Raises
     ------
     ValueError
-        The text is no declaration.
+        The text is not a declaration.
     """
     matches = list(_ARRAY.finditer(sizes))
     if "".join(match.group() for match in matches) != sizes:

@@ -253,7 +253,7 @@ class Filament(LinkedRod):
         return self.from_nodes(np.concatenate([np.zeros((1, 3)), tangents]) * self.system.link)
 
     def reflect(self, x: State) -> State:
-        """Return the state reflected in the plane x = 0; InputError if it is no symmetry."""
+        """Return the state reflected in the plane x = 0; InputError if that is not a symmetry."""
         if self.piece_curvature[:, 1].any():
             raise InputError(
                 "a filament with natural curvature about its second director is no mirror image of"

@@ -239,7 +239,7 @@ def from_state(model: Model, nodes: Nodes, amplitude: float = 1.0) -> State:
     Raises
     ------
     InputError
-        The nodes are no finite numbers of this shape, coincide, or do not begin at the clamp; the
+        The nodes are not finite numbers of this shape, coincide, or do not begin at the clamp; the
         amplitude is not above 0; or the shape leaves the plane of a confined model.
 
     Examples

@@ -158,7 +158,7 @@ class Model(Protocol):
         Raises
         ------
         InputError
-            The straight state is no equilibrium.
+            The straight state is not an equilibrium.
         """
 
     def displaced(self, along_x: Array, along_y: Array | None = None) -> State:

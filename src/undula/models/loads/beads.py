@@ -25,7 +25,7 @@ class BeadLoad(Load):
     Raises
     ------
     InputError
-        The force is out of its range; there is no bead, or one twice, or a number below 1.
+        The force is out of its range, or the numbers of beads are not different and at least 1.
 
     Examples
     --------

@@ -62,13 +62,13 @@ def _register(rod: Any) -> None:
     @kernel
     def mobility(system: Any, t: Any, mean: Any, p: Any, q: Any, i: Any) -> Any:
         """Return t_p . M_i t_q, with m of node i in `mean`."""
-        straight = first = second = 0.0
+        product = first = second = 0.0
         for a in range(d):
-            straight += t[p, a] * t[q, a]
+            product += t[p, a] * t[q, a]
             first += t[p, a] * mean[a]
             second += t[q, a] * mean[a]
-        anisotropy = system.anisotropy / (1.0 - system.anisotropy)
-        return (straight + anisotropy * first * second) / system.weight[i]
+        excess = system.anisotropy / (1.0 - system.anisotropy)  # gamma - 1
+        return (product + excess * first * second) / system.weight[i]
 
     @kernel
     def rigid_multipliers(system: Any, y: Any) -> None:
@@ -138,7 +138,7 @@ def _register_energy(rod: Any) -> None:
         tangents(system, y, t, length)
         bending = stretching = 0.0
         for i in range(n):
-            chord = 0.0  # |t_i - t_{i-1}| = 2 sin(psi / 2), exact for small angles too
+            chord = 0.0  # |t_i - t_{i-1}|^2 = 4 sin^2(psi / 2), accurate for small angles too
             for a in range(d):
                 previous = t[i - 1, a] if i > 0 else (1.0 if a == d - 1 else 0.0)
                 chord += (t[i, a] - previous) ** 2
@@ -191,7 +191,7 @@ def observe(system: Any, states: Any, out: Any) -> None:
         Positions and multipliers; the multipliers are recomputed.
     out : ndarray, shape (m, 4) or (m, 2)
         Receives the energies of bending and of stretching, the active power and the dissipation;
-        with two columns the energies only, which takes no solution for velocities.
+        with two columns the energies only, which need no velocities.
     """
     y, v, rates_found = np.empty(states.shape[1]), np.empty(states.shape[1]), np.empty(3)
     for k in range(states.shape[0]):
