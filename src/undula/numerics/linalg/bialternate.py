@@ -9,7 +9,7 @@ For the pencil K(p) + sigma M with K(p) = K0 + p K1 consider antisymmetric matri
   (sigma_i - sigma_j)^2, so that it is singular exactly where two eigenvalues coalesce. It is
   quadratic in p, which doubles the size.
 
-No range of p is scanned, so that none of them is missed. The error is that of the reduction to n
+No range of p is scanned, so that no parameter is missed. The error is that of the reduction to n
 functions; the results are starting points for `undula.numerics.linalg.critical_points`.
 
 Source: the bialternate product, Fuller (1968), J. Math. Anal. Appl. 23, 71; Govaerts (2000),

@@ -77,7 +77,7 @@ class BorderedBand:
         B and C.
     corner : ndarray of shape (q, q)
         D.
-    soft : int, optional
+    shifted : int, optional
         Index at which both null vectors of a singular A, right and left, are not small; its
         diagonal entry is shifted. None for a regular A.
 
