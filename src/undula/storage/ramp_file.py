@@ -118,7 +118,7 @@ def load_ramp(path: Path | str) -> xr.Dataset:
     >>> from undula.analysis.ramps.ramp import Ramp, ramp
     >>> from undula.analysis.run_settings import Schedule
     >>> from undula.storage.ramp_file import Series, write_ramp
-    >>> model, values = un.Chain(2, un.TipLoad(1.0)), Ramp("load.force", (1.0, 2.0))
+    >>> model, values = un.Filament(4, un.TipLoad(1.0)), Ramp("load.force", (1.0, 2.0))
     >>> steps = list(ramp(model, values, un.straight(model), Schedule(until=0.1, samples=20)))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder) / "steps.nc"
