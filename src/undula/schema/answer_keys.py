@@ -1,9 +1,8 @@
 """Keys of the JSON objects with which commands answer, and the quantities that they hold.
 
-An object is described by the `Keys` that it may hold: each of them by a quantity, which fixes its
-unit, by the keys of an object, or of the objects of a list, or by `Named`, whose keys the input
-gives. Not every answer holds all of its keys; none holds another. Their meanings are in
-docs/output.md.
+An object is described by the `Keys` that it may hold. Each key is described by a quantity, which
+fixes its unit, by the keys of an object or of the objects of a list, or by `Named`. An answer holds
+no other keys, and need not hold all of them; docs/output.md states their meanings.
 """
 
 from collections.abc import Mapping
@@ -11,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 #: Without a unit: words, numbers of things, ratios, angles in radians, and mixed lists.
-PLAIN = "plain"
+UNITLESS = "unitless"
 #: Quantities with a unit.
 LENGTH, TIME, FREQUENCY, RATE = "length", "time", "frequency", "rate"
 FORCE, ENERGY = "force", "energy"
@@ -38,7 +37,7 @@ PARAMETER = "<parameter>"
 
 def plain(*names: str) -> Keys:
     """Return keys without a unit."""
-    return dict.fromkeys(names, PLAIN)
+    return dict.fromkeys(names, UNITLESS)
 
 
 def with_error(name: str, quantity: str) -> Keys:
@@ -158,8 +157,8 @@ STABILITY: Keys = {
     "force": FORCE,
     "force_in": _FURTHER,
     "spectrum": _EIGENVALUE,
-    "points": {PARAMETER: PLAIN, "force": FORCE, "force_in": _FURTHER, **_EIGENVALUE},
-    "thresholds": {PARAMETER: PLAIN, **_RINGING},
+    "points": {PARAMETER: UNITLESS, "force": FORCE, "force_in": _FURTHER, **_EIGENVALUE},
+    "thresholds": {PARAMETER: UNITLESS, **_RINGING},
 }
 FIND: Keys = {
     **EVERY,
@@ -174,7 +173,7 @@ FIND: Keys = {
     "period": TIME,
     "trivial_rate": RATE,
     **plain("trivial_multiplier_error"),
-    "errors": Named(PLAIN),
+    "errors": Named(UNITLESS),
 }
 FOLLOW: Keys = {
     **EVERY,
@@ -182,14 +181,14 @@ FOLLOW: Keys = {
     "onset": FORCE,
     "units": _NAMES,
     "points": {
-        PARAMETER: PLAIN,
+        PARAMETER: UNITLESS,
         "frequency": FREQUENCY,
         **plain("stable"),
         **_RATES,
         **_EXTENTS,
     },
     "bifurcations": {
-        PARAMETER: PLAIN,
+        PARAMETER: UNITLESS,
         **plain("kind", "value", "error", "stability", "not_converged"),
         **_REFERENCE,
         "force_in": _FURTHER,
@@ -210,7 +209,7 @@ THRESHOLD: Keys = {
     **_THRESHOLD,
     **plain("parameter", "figure"),
     "units": _NAMES,
-    "thresholds": {PARAMETER: PLAIN, **_THRESHOLD},
+    "thresholds": {PARAMETER: UNITLESS, **_THRESHOLD},
 }
 
 # ---------------------------------------------------------------- ramps
@@ -241,18 +240,18 @@ SWEEP: Keys = {
     "units": _NAMES,
     "axes": plain("key", "first", "last", "count"),
     "points": plain("all", "done", "failed", "to_go"),
-    "verdicts": Named(PLAIN),
-    "failures": {PARAMETER: PLAIN, **plain("try", "reason")},
+    "verdicts": Named(UNITLESS),
+    "failures": {PARAMETER: UNITLESS, **plain("try", "reason")},
 }
 PLOT: Keys = {
     **EVERY,
     **plain("figure", "points", "done", "failed", "parameter"),
-    "verdicts": Named(PLAIN),
+    "verdicts": Named(UNITLESS),
     **_REFERENCE,
-    "borders": Named({PARAMETER: PLAIN, "force": FORCE, "error": FORCE, **plain("reason")}),
-    "disagreements": {PARAMETER: PLAIN, **plain("try", "verdict", "sentence", "near")},
+    "borders": Named({PARAMETER: UNITLESS, "force": FORCE, "error": FORCE, **plain("reason")}),
+    "disagreements": {PARAMETER: UNITLESS, **plain("try", "verdict", "sentence", "near")},
     "basins": {
-        PARAMETER: PLAIN,
+        PARAMETER: UNITLESS,
         **plain("tries"),
         "verdicts": Named(plain("fraction", "low", "high")),
     },
@@ -273,13 +272,13 @@ CLAIM: Keys = {
     **plain("command", "value", "error", "unit", "verdict", "reason", "because", "note"),
     **plain("expected", "as_expected", "erratum", "silent", "steps", "where"),
     # The settings that the value is computed at.
-    "at": Named(PLAIN),
+    "at": Named(UNITLESS),
 }
 REPRODUCE: Keys = {
     **EVERY,
     **plain("report", "claims_file"),
     "claims": CLAIM,
-    "verdicts": Named(PLAIN),
+    "verdicts": Named(UNITLESS),
     "items": plain("name", "title", "paper", "claims"),
 }
 
