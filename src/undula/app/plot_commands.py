@@ -38,7 +38,7 @@ def plot(
     overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> int:
-    """Draw a stored run or a study of many runs, by default beside it as .png."""
+    """Draw a stored run or a study of many runs, by default next to it as .png."""
     if result.is_dir():
         from undula.app.commands.plot_sweep import PlotRequest, plot_sweep
 
@@ -74,7 +74,7 @@ def movie(
     overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> int:
-    """Make the movie of a stored run, by default beside it as .mp4."""
+    """Make the movie of a stored run, by default next to it as .mp4."""
     from undula.app.commands.drawing import draw_movie, movie_path
     from undula.storage.outputs import claimed
     from undula.storage.run_file import load_result

@@ -97,10 +97,10 @@ def find(
     ] = None,
     as_json: Json = False,
 ) -> int:
-    """Solve for a state of a kind, and tell whether it is stable.
+    """Solve for a state of a kind and report its stability.
 
-    A periodic motion is that which a run comes to: the one of --run, whose model it is of, or else
-    one from a small kick.
+    A periodic motion is the one that a run reaches: the run of --run, whose model it has, or a new
+    run from a small kick.
     """
     from undula.app.commands.find import find_state
     from undula.app.commands.find_start import start_of_search

@@ -22,6 +22,7 @@ def with_error(value: float, error: float | None) -> str:
     Parameters
     ----------
     value
+        The number.
     error
         Error against the body that the links represent, from links and solver together; None if it
         is unknown.
@@ -39,6 +40,7 @@ def on_links(value: float, error: float | None, links: int, unit: str = "", cure
     Parameters
     ----------
     value
+        The number.
     error
         Error of the solver on these links; None if it is unknown.
     links

@@ -52,12 +52,13 @@ def follow_along(
     Parameters
     ----------
     model : Model
-        Its own value of the parameter does not matter.
+        The model; its own value of the parameter is not used.
     kind : str
         Kind of state, or "straight".
     interval : ParameterInterval
+        The parameter, and its first and last value.
     converge : bool
-        Whether to take bifurcations to the limit of many links.
+        If true, extrapolate bifurcations to the limit of many links.
     title : str
         Beginning of the text.
 

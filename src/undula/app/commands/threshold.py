@@ -26,12 +26,13 @@ def answer_threshold(
     Parameters
     ----------
     model : Model
+        The model; its own force is not used.
     name : str
-        Of the threshold.
+        Name of the threshold, such as "onset".
     converge : bool
-        Whether to take it to the limit of many links.
+        If true, extrapolate the threshold to the limit of many links.
     up_to : float or None
-        The force at which the search ends.
+        Force at which the search ends [the model's unit of force]; None for the default.
     title : str
         Beginning of the text.
     """
@@ -149,7 +150,7 @@ def links_text(answer: Mapping[str, Any]) -> str:
 
 
 def _is_of_few(answer: Mapping[str, Any]) -> bool:
-    """Return whether a force is that of a few links which stand for a body of more."""
+    """Return True if a force holds for a few links that represent a body of more links."""
     differs = answer["value"] is not None and answer["error"] != answer["solver_error"]
     return differs and isinstance(answer["links"], int)
 

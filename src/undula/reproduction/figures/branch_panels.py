@@ -91,7 +91,7 @@ def force_labels(pair: Pair, span: tuple[float, float], edges: tuple[float, floa
 
 
 def _event(bifurcation: Bifurcation[Any]) -> str:
-    """Return the change of stability at a bifurcation, or its kind if there is none."""
+    """Return the change of stability at a bifurcation; without a change, its kind."""
     unchanged = bifurcation.stability == "unchanged"
     return bifurcation.kind if unchanged else bifurcation.stability
 

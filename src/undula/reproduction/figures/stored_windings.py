@@ -41,11 +41,11 @@ def windings(*runs: xr.Dataset) -> Figure:
         There is no run, or one has too few samples or lacks a variable.
     """
     return winding_figure(
-        [_winding(run, which) for run, which in zip(runs, ascii_lowercase, strict=False)]
+        [_azimuth_series(run, which) for run, which in zip(runs, ascii_lowercase, strict=False)]
     )
 
 
-def _winding(run: xr.Dataset, which: str) -> TipAngleSeries:
+def _azimuth_series(run: xr.Dataset, which: str) -> TipAngleSeries:
     scene, summary = read_scene(run), json.loads(run.attrs["summary"])
     shown = _finest(scene)
     rate = _rate(shown, summary)

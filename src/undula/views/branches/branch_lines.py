@@ -24,7 +24,7 @@ class BranchLine:
     low, high, mean : ndarray of shape (k,)
         Bending energy over a cycle.
     stable : ndarray of bool, shape (k - 1,)
-        Whether the branch is stable between one point and the next.
+        True where the branch is stable between one point and the next.
     marks : ndarray of int, shape (b,)
         Indices of the points that are bifurcations, in their order.
     """
@@ -39,7 +39,7 @@ class BranchLine:
 
     @property
     def parts(self) -> list[tuple[slice, bool]]:
-        """Points of each part of one stability, ends included, and whether it is stable.
+        """Points of each stable or unstable part, ends included, and True for a stable part.
 
         A single point has no parts.
         """

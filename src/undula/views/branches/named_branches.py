@@ -116,7 +116,9 @@ def draw_parts(
     Parameters
     ----------
     axes : Axes
+        Axes of the parameter and the quantity.
     drawn : NamedBranch
+        The branch, with k points.
     heights : ndarray of shape (k,)
         The quantity at the points of the line.
     styles : mapping of bool to (float, dashes)

@@ -21,6 +21,7 @@ def fitting_legend(
     Parameters
     ----------
     figure : Figure
+        The figure.
     handles : sequence of artist
         At least one handle, each with its label.
     corner : tuple of float

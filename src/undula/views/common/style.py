@@ -187,7 +187,9 @@ def write_title(
     Parameters
     ----------
     figure : Figure
+        The figure.
     title : str
+        The title, in one line.
     place : tuple of float
         Lower left corner in fractions of the figure.
     right : float

@@ -153,8 +153,8 @@ def draw_borders(axes: Axes, boundaries: Sequence[Border]) -> list[Artist]:
     ----------
     axes
         The axes.
-    borders
-        The boundaries.
+    boundaries
+        The boundaries, as for `phase_diagram`.
     """
     halo = [patheffects.withStroke(linewidth=3.4, foreground="white")]
     handles: list[Artist] = []
@@ -183,6 +183,7 @@ def place_legend(
     Parameters
     ----------
     figure : Figure
+        The figure.
     rows : sequence of sequence of artist
         Handles of each row; a long row is broken.
     left, top : float

@@ -39,7 +39,7 @@ def draw_line(
         The figure.
     store
         The stored sweep.
-    borders
+    boundaries
         Stability boundaries, as for `phase_diagram`.
     contradicting
         Contradicting points, as for `phase_diagram`.

@@ -90,7 +90,7 @@ def border_traces(store: xr.Dataset, names: Names, boundaries: Sequence[Border])
         The stored sweep.
     names
         Names of the horizontal and the vertical axis.
-    borders
+    boundaries
         Stability boundaries, as for `phase_diagram`.
     """
     traces = []
