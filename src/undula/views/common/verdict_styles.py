@@ -31,16 +31,17 @@ LOOKS = {
     "asymmetric spinning": Look("#332288", "p", "pentagon"),
     "asymmetric flapping": Look("#999933", ">", "triangle-right"),
     "undecided": Look("#CC79A7", "v", "triangle-down"),
+    "at rest": Look("#882255", "<", "triangle-left"),
 }
-_OTHER = Look("#882255", "<", "triangle-left")
+_OTHER = Look("#661100", "P", "cross")
 
 
 def look_of(verdict: str) -> Look:
-    """Return the look of a verdict; unknown verdicts share one look."""
+    """Return the look of a verdict; words that are no verdicts share one look."""
     return LOOKS.get(verdict, _OTHER)
 
 
 def ordered(verdicts: Iterable[str]) -> list[str]:
-    """Return verdicts without repetition in the order of legends, unknown verdicts last."""
+    """Return verdicts without repetition in the order of legends, other words last."""
     order = {verdict: place for place, verdict in enumerate(LOOKS)}
     return sorted(set(verdicts), key=lambda verdict: order.get(verdict, len(order)))
