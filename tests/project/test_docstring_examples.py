@@ -1,11 +1,16 @@
 """The examples in the docstrings of exported names run and give what they show."""
 
 import doctest
+import inspect
+import re
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import undula
+import undula.views
+from example_results import write_results
 
 FINDER = doctest.DocTestFinder(recurse=False)
 #: Models, loads and initial states: each of them shows an example.
@@ -14,25 +19,87 @@ BUILDING_BLOCKS = (
     *("BeadLoad", "LinearLoad", "Load", "PointLoad", "PowerLoad", "ProfileLoad", "TableLoad"),
     *("TipLoad", "from_state", "helix", "kicked", "mode", "planar", "straight"),
 )
+VIEWS = tuple(f"views.{name}" for name in undula.views.__all__)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give a folder with the stored results that examples name."""
+    folder = tmp_path_factory.mktemp("examples")
+    write_results(folder)
+    return folder
+
+
+def exported(name: str) -> Any:
+    """Return what undula exports by a name, as "views.movie"."""
+    value: Any = undula
+    for part in name.split("."):
+        value = getattr(value, part)
+    return value
 
 
 def examples(name: str) -> list[doctest.DocTest]:
-    exported: Any = getattr(undula, name)
-    found = FINDER.find(exported, name, globs={})
+    found = FINDER.find(exported(name), name, globs={})
     return [example for example in found if example.examples]
 
 
-@pytest.mark.parametrize("name", BUILDING_BLOCKS)
-def test_every_building_block_shows_an_example(name: str) -> None:
+def undescribed(value: Any) -> set[str]:
+    """Return the arguments without an entry among the Parameters, or Attributes of a class."""
+    section = "Attributes" if inspect.isclass(value) else "Parameters"
+    found = re.search(rf"{section}\n-+\n(.*?)(\n\n\w+\n-+\n|\Z)", inspect.getdoc(value) or "", re.S)
+    entries = re.findall(r"^(\w[\w, ]*) : .+\n    \S", found[1], re.M) if found else []
+    described = {name for entry in entries for name in entry.split(", ")}
+    return {*inspect.signature(value).parameters} - described
+
+
+@pytest.mark.parametrize("name", [*BUILDING_BLOCKS, *VIEWS])
+def test_every_building_block_and_view_shows_an_example(name: str) -> None:
     assert examples(name)
 
 
-@pytest.mark.parametrize("name", sorted({*undula.__all__} - {"observables", "views"}))
-def test_examples_give_what_they_show(name: str) -> None:
-    for example in examples(name):
-        shown = list[str]()
-        failed, _ = doctest.DocTestRunner(verbose=False).run(example, out=shown.append)
-        assert not failed, "".join(shown)
+@pytest.mark.parametrize("name", VIEWS)
+def test_no_example_of_a_view_is_left_out(name: str) -> None:
+    lines = [line for found in examples(name) for line in found.examples]
+    assert [line.source for line in lines if doctest.SKIP in line.options] == []
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_every_view_describes_all_its_arguments_with_their_types(name: str) -> None:
+    assert undescribed(exported(name)) == set()
+
+
+def test_an_argument_without_a_type_or_without_a_description_is_seen() -> None:
+    def draw(first: int, second: int, third: int) -> None:
+        """Draw.
+
+        Parameters
+        ----------
+        first : int
+            The first.
+        second
+            The second, without a type.
+        third : int
+
+        Returns
+        -------
+        fourth : int
+            Nothing.
+        """
+
+    assert undescribed(draw) == {"second", "third"}
+
+
+@pytest.mark.parametrize("name", sorted({*undula.__all__, *VIEWS} - {"observables", "views"}))
+def test_examples_give_what_they_show(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    shown = examples(name)
+    reads = any("results/" in example.docstring for example in shown)
+    monkeypatch.chdir(request.getfixturevalue("results") if reads else tmp_path)
+    for example in shown:
+        report = list[str]()
+        failed, _ = doctest.DocTestRunner(verbose=False).run(example, out=report.append)
+        assert not failed, "".join(report)
 
 
 def test_an_example_that_gives_something_else_fails() -> None:

@@ -64,6 +64,7 @@ def lay_out(path: Path, sweep: Sweep) -> None:
 
 
 def _fill(path: Path, sweep: Sweep) -> None:
+    """Make a folder with the metadata, the axes and the seeds of a sweep, and without chunks."""
     wanted = parse_input(sweep.tables(0))
     model = build_model(wanted)
     group = zarr.create_group(path, zarr_format=ZARR_FORMAT, attributes=_attributes(sweep))
@@ -109,10 +110,10 @@ def _add_variables(group: zarr.Group, sweep: Sweep, model: Model) -> None:
     dims = _dims(sweep)
     lengths = {"shape": SHAPES, "instant": INSTANTS, "node": model.links + 1, "axis": 3}
     columns = columns_of(sweep.label, sweep.keep, sweep.undecided)
-    largest = 8
+    point_bytes = 8
     if sweep.keep == "period":
-        largest *= SHAPES * lengths["node"] * lengths["axis"]
-    chunk = chunk_shape(sweep.shape, point_bytes=largest, whole_rows=sweep.whole_rows)
+        point_bytes *= SHAPES * lengths["node"] * lengths["axis"]
+    chunk = chunk_shape(sweep.shape, point_bytes=point_bytes, whole_rows=sweep.whole_rows)
     units = {**model.units.names(), "rate": "1/T"}
     for column in columns:
         inner_dims = INNER.get(column.name, ())

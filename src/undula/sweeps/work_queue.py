@@ -34,7 +34,7 @@ class SweepTask:
     numbers
         Numbers of the points.
     deaths
-        Number of times that every worker died that the task was given to.
+        Number of times that every worker that was given the task has died.
     """
 
     chunk: int
@@ -123,7 +123,7 @@ class SweepWork:
         chunk.unsaved_since = min(chunk.unsaved_since, time.monotonic())
 
     def died(self, task: SweepTask) -> None:
-        """Take back a task over which every worker died, perhaps because of one of its points."""
+        """Take back a task whose workers have all died, perhaps because of one of its points."""
         half = len(task.numbers) // 2
         if half and not self._whole_rows:
             self._again.extend(_cut(task, half))

@@ -21,8 +21,8 @@ COUNT_EVERY = 1.0
 PATIENCE, ANSWERS_IN = 20.0, 2.0
 #: Time without workers after which the user is notified [s].
 NOTIFY_AFTER = 5.0
-#: Time without workers after which a sweep is stopped [s]: own workers start within seconds, those
-#: of another scheduler may have to wait for a machine. Then the time without an answer of it.
+#: Times after which a sweep is stopped [s]: without own workers, which start within seconds;
+#: without workers of another scheduler, which may wait for a machine; without its answer.
 OWN_PATIENCE, FOREIGN_PATIENCE, SILENCE = 60.0, 600.0, 60.0
 #: Time between two replacements of lost workers [s].
 REPLACE_EVERY = 10.0
@@ -45,7 +45,7 @@ class LostError(Exception):
 
 
 class DiedError(Exception):
-    """Every worker died that a task was given to."""
+    """Every worker that was given a task has died."""
 
 
 class Pool:
@@ -120,7 +120,7 @@ class Pool:
     def come_back(self, patience: float) -> Iterator[tuple[Any, Any]]:
         """Yield the finished tasks with their results, after at most `patience` seconds.
 
-        The result of a task over which every worker died is a `DiedError`.
+        The result of a task is a `DiedError` if every worker that was given it has died.
 
         Raises
         ------

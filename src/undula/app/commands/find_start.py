@@ -41,9 +41,9 @@ class SearchStart:
         """Return the periodic motion that the run or the seed leads to, None without both."""
         if self.run is None:
             return None if self.seed is None else find_periodic(self.model, seed=self.seed)
-        own, stored = self.run
-        motion = find_periodic(own, stored)
-        if own == self.model or isinstance(motion, NotFound):
+        run_model, stored = self.run
+        motion = find_periodic(run_model, stored)
+        if run_model == self.model or isinstance(motion, NotFound):
             return motion
         return find_periodic(self.model, motion)
 
@@ -82,8 +82,8 @@ def start_of_search(
     tables = json.loads(stored.attrs["input"])
     read = {name: tables[name] for name in ModelInput.model_fields if name in tables}
     try:
-        own = build_model(changed_tables(ModelInput, read, ())[1])
+        run_model = build_model(changed_tables(ModelInput, read, ())[1])
     except InputError as error:
         raise InputError(f"{run} holds no input that a command could read: {error}") from error
     wanted = changed_tables(ModelInput, read, changes)[1]
-    return SearchStart(build_model(wanted), wanted.load_text, run=(own, stored))
+    return SearchStart(build_model(wanted), wanted.load_text, run=(run_model, stored))

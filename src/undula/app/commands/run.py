@@ -68,9 +68,9 @@ def compute(job: RunJob, budget: float, *, lyapunov: bool) -> Computed:
         judged = carry_on(simulation, budget=budget, progress=watcher)
         judged = judged or Run.of(simulation, Exponents.NEVER)
         store(job, judged)  # the exponents may take long and be interrupted
-        wanted = lyapunov or (judged.lyapunov is None and judged.verdict.late is not None)
+        needs_exponents = lyapunov or (judged.lyapunov is None and judged.verdict.late is not None)
         run, stopped = judged, False
-        if wanted and simulation.ending not in CUT_SHORT_ENDINGS:
+        if needs_exponents and simulation.ending not in CUT_SHORT_ENDINGS:
             exponents = Exponents.ALWAYS if lyapunov else Exponents.IF_IRREGULAR
             left = budget - (time.monotonic() - begun)
             run = with_exponents(simulation, exponents, budget=left, progress=watcher)

@@ -174,8 +174,8 @@ def peak(of: ArrayLike, values: ArrayLike) -> float:
     if not len(tops):
         raise ValueError("the values have no maximum inside")
     top = int(tops[0])
-    flat = CubicSpline(places, heights).derivative().roots(extrapolate=False)
-    return float(flat[np.abs(flat - places[top]).argmin()])
+    extrema = CubicSpline(places, heights).derivative().roots(extrapolate=False)
+    return float(extrema[np.abs(extrema - places[top]).argmin()])
 
 
 def peak_error(of: ArrayLike, values: ArrayLike) -> float:
@@ -249,6 +249,10 @@ def _parabola(places: Points, values: Points) -> Points:
 def _range(
     places: Points, margin: Points, around: float, zero: Callable[[Points, Points, int], float]
 ) -> list[float]:
+    """Return the ends of the range around a place on which `margin` is positive.
+
+    `zero` returns the zero between a point, given by its index, and the next one.
+    """
     inside = int(np.abs(places - around).argmin())
     if not margin[inside] > 0.0:
         raise ValueError(f"it does not hold at {around:g}")
@@ -269,11 +273,13 @@ def _zero(places: Points, values: Points, left: int) -> float:
 
 
 def _straight_zero(places: Points, values: Points, left: int) -> float:
+    """Return the zero of the straight line to the right of a point."""
     a, b = values[left], values[left + 1]
     return float(places[left] - a * (places[left + 1] - places[left]) / (b - a))
 
 
 def _sorted(of: ArrayLike, values: ArrayLike) -> tuple[Points, Points]:
+    """Return places and values of a curve with rising places."""
     places, heights = np.asarray(of, dtype=float), np.asarray(values, dtype=float)
     if len(places) < 3:
         raise ValueError(f"a curve of {len(places)} points is too short")

@@ -70,7 +70,7 @@ def values_of_call(call: str, inputs: Path) -> Values:
 
 
 def other_values(stated: Mapping[str, Any], computed: Mapping[str, Values]) -> str:
-    """Return the difference between the values of a claim and of its commands; empty without.
+    """Return the first difference between the values of a claim and of its commands in words.
 
     Parameters
     ----------
@@ -78,6 +78,11 @@ def other_values(stated: Mapping[str, Any], computed: Mapping[str, Values]) -> s
         Value, or list of values, of the claim by key of the input.
     computed
         Values of the commands of the claim by name. A command without a key does not depend on it.
+
+    Returns
+    -------
+    str
+        Empty without a difference.
     """
     for key, value_or_list in stated.items():
         wanted = value_or_list if isinstance(value_or_list, list) else [value_or_list]

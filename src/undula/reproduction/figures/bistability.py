@@ -15,6 +15,7 @@ from undula.views.common import style
 from undula.views.common.panels import legend_above, letter_axes
 
 _ROWS = ("straight", "spinning", "planar flapping")
+#: Widths of the bars of stable and unstable parts [points].
 _STABLE, _UNSTABLE = 9.0, 1.4
 #: Margin of the close-up on either side of the common interval, in widths of it.
 _AROUND = 1.0
@@ -34,8 +35,8 @@ def bistability(spinning: Mapping[str, Any], flapping: Mapping[str, Any]) -> Fig
     Returns
     -------
     matplotlib.figure.Figure
-        9 by 3.4 inches, not known to pyplot: (a) all forces, (b) those around the interval on which
-        both are stable, if there is one.
+        9 by 3.4 inches, not registered with pyplot: (a) all forces, (b) those around the interval
+        on which both are stable, if there is one.
 
     Raises
     ------
@@ -44,29 +45,30 @@ def bistability(spinning: Mapping[str, Any], flapping: Mapping[str, Any]) -> Fig
     """
     pair = read_pair(spinning, flapping)
     units = same_units(spinning["units"], flapping["units"])
-    both = common_intervals(pair)
+    common = common_intervals(pair)
     end = last_force(pair)
-    edges = ((0.13, 0.6), (0.68, 0.975)) if both else ((0.13, 0.975),)
+    edges = ((0.13, 0.6), (0.68, 0.975)) if common else ((0.13, 0.975),)
     spans = [(0.0, end)]
-    if both:
-        wide = _AROUND * (both[0][1] - both[0][0])
-        spans.append((both[0][0] - wide, both[0][1] + wide))
+    if common:
+        low, high = common[0]
+        margin = _AROUND * (high - low)
+        spans.append((low - margin, high + margin))
     with style.figure_style():
         figure = Figure(figsize=(9.0, 3.4))
         for (left, right), span, which in zip(edges, spans, "ab", strict=False):
             axes = figure.add_axes((left, 0.175, right - left, 0.6))
-            _draw(axes, pair, both)
+            _draw(axes, pair, common)
             axes.set(xlim=span, ylim=(-0.55, 2.55))
             axes.invert_yaxis()
             axes.set_xlabel(style.force_label(units))
             axes.set_yticks(range(3), _ROWS if which == "a" else [""] * 3)
             axes.tick_params(axis="y", length=0.0, labelsize=9.0, labelcolor=style.INK)
-            if both:
+            if common:
                 letter_axes(figure, axes, which, 0.2)
-        if both:
-            _annotate(figure.axes[-1], both[0])
+        if common:
+            _annotate(figure.axes[-1], common[0])
         bifurcations = any(branch.branch.bifurcations for branch in pair)
-        legend_above(figure, _handles(bifurcations=bifurcations, both=bool(both)), 0.13)
+        legend_above(figure, _handles(bifurcations=bifurcations, both=bool(common)), 0.13)
     return figure
 
 
@@ -77,8 +79,8 @@ def common_intervals(pair: Pair) -> list[Interval]:
     return sorted(interval for interval in common if interval[0] < interval[1])
 
 
-def _draw(axes: Axes, pair: Pair, both: list[Interval]) -> None:
-    for low, high in both:
+def _draw(axes: Axes, pair: Pair, common: list[Interval]) -> None:
+    for low, high in common:
         axes.axvspan(low, high, color=style.FOCUS, lw=0.0, gid="both", zorder=0)
     onsets = [drawn.branch.onset for drawn in pair if drawn.branch.onset is not None]
     if onsets:

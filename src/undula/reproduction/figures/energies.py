@@ -48,7 +48,7 @@ def bending_energies(spinning: Mapping[str, Any], flapping: Mapping[str, Any]) -
     Returns
     -------
     matplotlib.figure.Figure
-        9 by 6.2 inches, not known to pyplot: (a) energies, (b) by how much that of spinning
+        9 by 6.2 inches, not registered with pyplot: (a) energies, (b) by how much that of spinning
         differs from the logarithm.
 
     Raises

@@ -41,8 +41,8 @@ def lyapunov(*runs: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        9 by 4.2 inches, not known to pyplot: for each number, from the largest on, the exponents
-        of all runs side by side; first the rate at which pairs of runs part, where it is known.
+        9 by 4.2 inches, not registered with pyplot. The exponents of all runs are side by side, by
+        their number from the largest on, after the rate at which pairs of runs separate.
 
     Raises
     ------
@@ -106,6 +106,7 @@ def _stored(summary: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _scale(axes: Any, values: Any) -> None:
+    """Set a logarithmic scale, linear around zero, if few exponents are much larger than others."""
     sizes = np.abs(values[values != 0.0])
     if sizes.size and sizes.max() > _LOGARITHMIC_ABOVE * np.median(sizes):
         axes.set_yscale("symlog", linthresh=float(np.median(sizes)))

@@ -29,7 +29,7 @@ def force_profiles() -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 3.7 inches, not known to pyplot.
+        10 by 3.7 inches, not registered with pyplot.
     """
     with style.figure_style():
         figure = Figure(figsize=(10.0, 3.7))

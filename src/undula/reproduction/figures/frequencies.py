@@ -69,8 +69,8 @@ def frequencies(
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 4.9 inches, not known to pyplot: (a) the first third of the forces, (b) all of them;
-        or all in one panel if motions begin later.
+        10 by 4.9 inches, not registered with pyplot: (a) the first third of the forces, (b) all of
+        them; or all in one panel if motions begin later.
 
     Raises
     ------

@@ -36,7 +36,7 @@ def slowness(spinning: Mapping[str, Any], flapping: Mapping[str, Any]) -> Figure
     Returns
     -------
     matplotlib.figure.Figure
-        9 by 4 inches, not known to pyplot.
+        9 by 4 inches, not registered with pyplot.
 
     Raises
     ------

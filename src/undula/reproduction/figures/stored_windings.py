@@ -28,7 +28,7 @@ def windings(*runs: xr.Dataset) -> Figure:
     Parameters
     ----------
     *runs : xarray.Dataset
-        Stored runs, at least one, as `load_result` gives them.
+        Stored runs, at least one, as `undula.load_result` returns them.
 
     Returns
     -------

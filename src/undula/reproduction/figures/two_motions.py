@@ -55,13 +55,13 @@ def transition(spinning_run: xr.Dataset, flapping_run: xr.Dataset) -> Figure:
     Parameters
     ----------
     spinning_run, flapping_run : xarray.Dataset
-        Stored runs of one kind of model, as `load_result` gives them.
+        Stored runs of one kind of model, as `undula.load_result` returns them.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 6.4 inches, not known to pyplot: (a) shapes of the last period, (b) the tip from
-        above, (c) its height and (d) the bending energy against time, over two periods.
+        10 by 6.4 inches, not registered with pyplot: (a) shapes of the last period, (b) the tip
+        from above, (c) its height and (d) the bending energy against time, over two periods.
 
     Raises
     ------
@@ -95,12 +95,12 @@ def two_links(spinning_run: xr.Dataset, flapping_run: xr.Dataset) -> Figure:
     Parameters
     ----------
     spinning_run, flapping_run : xarray.Dataset
-        Stored runs of one kind of model, as `load_result` gives them.
+        Stored runs of one kind of model, as `undula.load_result` returns them.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 3.9 inches, not known to pyplot.
+        10 by 3.9 inches, not registered with pyplot.
 
     Raises
     ------

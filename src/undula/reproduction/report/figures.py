@@ -19,7 +19,7 @@ from undula.sweeps.store import load_sweep
 from undula.terminal.output import DONE
 from undula.views.common.figure_file import figure_bytes
 
-_KINDS = {".png": "image/png", ".svg": "image/svg+xml"}
+_MEDIA_TYPES = {".png": "image/png", ".svg": "image/svg+xml"}
 #: Results that tasks store in addition to their answers, and their readers.
 _STORED: Mapping[str, Callable[[Path], Any]] = {
     "run.nc": load_result,
@@ -29,7 +29,7 @@ _STORED: Mapping[str, Callable[[Path], Any]] = {
 
 
 @dataclass(frozen=True)
-class Shown:
+class PlacedFigure:
     """A figure or movie with its place in the page.
 
     Attributes
@@ -49,7 +49,7 @@ class Shown:
     left_out: str = ""
 
 
-def figures_of(name: str, item: Item, tasks: Tasks, *, quick: bool) -> list[Shown]:
+def figures_of(name: str, item: Item, tasks: Tasks, *, quick: bool) -> list[PlacedFigure]:
     """Return the figures of an item; figures with missing tasks have the reason for it.
 
     Raises
@@ -62,15 +62,15 @@ def figures_of(name: str, item: Item, tasks: Tasks, *, quick: bool) -> list[Show
     for figure in item.figures:
         reason = left_out(sorted(figure.asks), answers, quick=quick)
         if reason:
-            shown.append(Shown(figure.name, figure.shows, figure.caption, "", reason))
+            shown.append(PlacedFigure(figure.name, figure.shows, figure.caption, "", reason))
             continue
         suffix, content = _content(figure, answers, tasks)
-        source = f"data:{_KINDS[suffix]};base64,{base64.b64encode(content).decode()}"
-        shown.append(Shown(figure.name, figure.shows, figure.caption, source))
+        source = f"data:{_MEDIA_TYPES[suffix]};base64,{base64.b64encode(content).decode()}"
+        shown.append(PlacedFigure(figure.name, figure.shows, figure.caption, source))
     return shown
 
 
-def movies_of(out: Path, name: str, item: Item, tasks: Tasks, *, quick: bool) -> list[Shown]:
+def movies_of(out: Path, name: str, item: Item, tasks: Tasks, *, quick: bool) -> list[PlacedFigure]:
     """Copy the movies of an item next to the page; movies with missing tasks have the reason.
 
     Raises
@@ -84,11 +84,11 @@ def movies_of(out: Path, name: str, item: Item, tasks: Tasks, *, quick: bool) ->
         place = out / "movies" / f"{name}-{next(iter(movie.asks))}.mp4"
         reason = left_out(sorted(movie.asks), answers, quick=quick)
         if reason:
-            shown.append(Shown(place.stem, movie.shows, movie.caption, "", reason))
+            shown.append(PlacedFigure(place.stem, movie.shows, movie.caption, "", reason))
             continue
         renewing(place).write(place, _bytes(_path(movie.file, answers)))
         relative = place.relative_to(out).as_posix()
-        shown.append(Shown(place.stem, movie.shows, movie.caption, relative))
+        shown.append(PlacedFigure(place.stem, movie.shows, movie.caption, relative))
     return shown
 
 

@@ -28,9 +28,9 @@ from undula.views.common import style
 from undula.views.common.labels import Label, label_above
 from undula.views.common.legends import fitting_legend
 
-# Edges of the panels, in shares of the figure.
+# Edges of the panels in fractions of the figure.
 _LEFT, _RIGHT, _BOTTOM = 0.09, 0.975, 0.105
-# Margin at both ends of the parameter axis, as a share of it, for marks that lie there.
+# Margin at both ends of the parameter axis in fractions of its span, for marks that lie there.
 _MARGIN = 0.02
 
 
@@ -42,22 +42,22 @@ def bifurcation_diagram(
     Parameters
     ----------
     branches : sequence of Branch
-        At least one, all along one parameter; each is drawn in the order of following.
+        At least one, all along the same parameter; each is drawn in the order of following.
     title : str
-        The line above.
+        Title of the figure.
     runs : sequence of xarray.Dataset
-        Stored runs to compare with, as `load_result` gives them. Those that end straight, have no
-        frequency, do not hold the parameter or are in other units are counted in a note.
+        Stored runs to compare with, as `undula.load_result` returns them. Runs that end straight,
+        have no frequency, lack the parameter or have other units are only counted in a note.
 
     Returns
     -------
     matplotlib.figure.Figure
-        10 by 5.5 inches, not known to pyplot. Stable parts are solid, unstable ones dashed.
+        10 by 5.5 inches, not registered with pyplot. Stable parts are solid, unstable ones dashed.
 
     Raises
     ------
     InputError
-        There is no branch, or they are along different parameters or in different units.
+        No branch is given, or the branches have different parameters or units.
 
     Examples
     --------
@@ -65,7 +65,7 @@ def bifurcation_diagram(
     >>> state = un.find_spinning(un.Filament(8, un.TipLoad(60.0)))
     >>> branch = un.follow(state, "load.force", 80.0)
     >>> figure = un.views.bifurcation_diagram([branch], title="spinning")
-    >>> figure.savefig("branch.pdf")  # doctest: +SKIP
+    >>> figure.savefig("branch.pdf")
     """
     parameter, units = _common_parameter(branches), _common_units(branches)
     drawn = named_branches(branches)
@@ -84,7 +84,7 @@ def bifurcation_diagram(
             draw_energy(lower, branch)
         _draw_runs(upper, lower, points)
         _name_axes(figure, upper, lower, parameter, units)
-        _name_all(figure, drawn, points, len(runs) - len(points))
+        _add_legend(figure, drawn, points, len(runs) - len(points))
     return figure
 
 
@@ -152,14 +152,15 @@ def _name_axes(
     upper.tick_params(labelbottom=False)
     upper.set_ylabel(style.frequency_label(paper_time=False))
     lower.set_ylabel(style.energy_label(units))
-    forces = parameter == "load.force"
-    lower.set_xlabel(style.force_label(units) if forces else style.parameter_label(parameter))
+    is_force = parameter == "load.force"
+    lower.set_xlabel(style.force_label(units) if is_force else style.parameter_label(parameter))
     figure.align_ylabels([upper, lower])
 
 
-def _name_all(
+def _add_legend(
     figure: Figure, drawn: Sequence[NamedBranch], points: Sequence[StoredPoint], left_out: int
 ) -> None:
+    """Add the legend, and a note on the number of runs that are left out."""
     handles: list[Artist] = [
         Line2D([], [], color=branch.colour, lw=WIDTH, label=branch.name) for branch in drawn
     ]

@@ -12,8 +12,9 @@ from undula.views.branches.branch_lines import BranchLine, line_point
 
 # Points of the line from one state to the next: enough for a curve at the width of a page.
 _POINTS_PER_INTERVAL = 16
-# A bifurcation is searched for among this number of points, then among as many around the nearest
-# one: a fold is the value nearest to its own, and no search for a crossing would find it.
+# Number of trial points in the search for a bifurcation on the spline, and number of refinements
+# around the point whose value is nearest. A search for a crossing would miss a fold, where the
+# spline only touches the value.
 _TRIAL_POINTS, _ROUNDS = 101, 4
 
 
@@ -44,6 +45,7 @@ def smooth_line(branch: Branch[Any]) -> BranchLine:
     count = distance.size
     finer = np.arange((count - 1) * _POINTS_PER_INTERVAL + 1) / _POINTS_PER_INTERVAL
     places = np.unique(np.concatenate([np.interp(finer, np.arange(count), distance), cuts]))
+    # Each cut reverses the stability of the parts behind it.
     crossed = np.searchsorted(cuts, 0.5 * (places[1:] + places[:-1]))
     values, frequencies, low, high, mean = curve(places).T
     parts = (crossed % 2 == 1) != stable[0]
@@ -52,7 +54,7 @@ def smooth_line(branch: Branch[Any]) -> BranchLine:
 
 
 def _distances(points: Array) -> Array:
-    """Return the distance of each state along the branch, every quantity by its own range."""
+    """Return the distance of each state along the branch; quantities are over their ranges."""
     ranges = np.ptp(points, axis=0)
     ranges[ranges == 0.0] = 1.0
     return np.concatenate(
@@ -63,7 +65,7 @@ def _distances(points: Array) -> Array:
 def _cut(
     curve: CubicSpline, ends: Array, bifurcations: Sequence[Bifurcation[Any]], *, loses: bool
 ) -> float:
-    """Return the distance between two states at which stability is lost or gained."""
+    """Return the distance along the branch at which stability changes between two states."""
     values = [point.value for point in bifurcations if (point.loses if loses else point.gains)]
     if not values:
         return float(ends.mean())

@@ -35,22 +35,22 @@ class StoredPoint:
 def stored_points(
     runs: Sequence[xr.Dataset], parameter: str, units: UnitNames
 ) -> list[StoredPoint]:
-    """Return the points of the runs that have one.
+    """Return the points of the runs whose parameter, frequency and energy can be read.
 
     Parameters
     ----------
     runs : sequence of xarray.Dataset
-        Stored runs, as `load_result` gives them.
+        Stored runs, as `undula.load_result` returns them.
     parameter : str
-        Such as "load.force".
+        Name of the parameter, such as "load.force".
     units : mapping of str to str
         Names of the diagram's units.
 
     Returns
     -------
     list of StoredPoint
-        Without the runs whose parameter cannot be read, without those that end straight or in a
-        motion without a frequency, and without those in other units.
+        Runs that end straight, have no frequency, lack the parameter or have other units are left
+        out.
     """
     points = [_point(run, parameter, units) for run in runs]
     return [point for point in points if point is not None]
@@ -63,18 +63,18 @@ def _point(run: xr.Dataset, parameter: str, units: UnitNames) -> StoredPoint | N
     value = _parameter(_mapping(json.loads(run.attrs.get("input", "{}"))), parameter)
     energy = _mapping(summary.get("bending_energy"))
     numbers = (value, summary.get("frequency"), *(energy.get(k) for k in ("min", "max", "mean")))
-    # While it decays a motion has a frequency, but it is not a state.
+    # A motion that decays to straight has a frequency, but is not a state.
     if not all(is_number(number) for number in numbers) or summary.get("verdict") == "straight":
         return None
     value, frequency, *bounds = (float(number) for number in numbers if number is not None)
     return StoredPoint(value, frequency, Range(*bounds))
 
 
-def _parameter(given: Mapping[str, Any], parameter: str) -> Any:
+def _parameter(tables: Mapping[str, Any], parameter: str) -> Any:
     """Return a parameter from an input file's tables, or from a model's fields and its load's."""
     table, _, key = parameter.partition(".")
-    inner = _mapping(_mapping(given.get("model")).get(table))
-    return _mapping(given.get(table)).get(key, inner.get(key))
+    inner = _mapping(_mapping(tables.get("model")).get(table))
+    return _mapping(tables.get(table)).get(key, inner.get(key))
 
 
 def _mapping(value: Any) -> Mapping[str, Any]:

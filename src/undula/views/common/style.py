@@ -21,13 +21,16 @@ from undula.models.units import FILAMENT_UNITS
 UnitNames = Mapping[str, str]
 FILAMENT: UnitNames = FILAMENT_UNITS.names()
 
+# Lines and text, and those of secondary importance.
 INK = "#222222"
 QUIET = "#6b6b6b"
 SHADOW = "#b9b9b9"
+# Backgrounds: the ground below a filament; the settled, the enlarged and the unstable interval.
 GROUND = "#f3f3f1"
 SETTLED = "#eff2f5"
 FOCUS = "#dbe5ee"
 UNSTABLE = "#f9e6d8"
+# Coordinates, energy and powers.
 X_COLOUR = "#0072B2"
 Y_COLOUR = "#D55E00"
 Z_COLOUR = "#009E73"
@@ -214,5 +217,5 @@ def _symbols(unit: str) -> str:
 
 def _plain_defaults() -> dict[str, object]:
     """Return the defaults of matplotlib without the backend, which the user chooses."""
-    kept = ("backend", "interactive", "toolbar", "timezone", "webagg", "savefig.directory")
-    return {k: v for k, v in mpl.rcParamsDefault.items() if not k.startswith(kept)}
+    user_settings = ("backend", "interactive", "toolbar", "timezone", "webagg", "savefig.directory")
+    return {k: v for k, v in mpl.rcParamsDefault.items() if not k.startswith(user_settings)}

@@ -122,8 +122,6 @@ def draw_points(
 ) -> None:
     """Draw a line through values, broken at NaN, with a dot for a value without neighbours.
 
-    `name` is the group identity of the line, and its label in a legend.
-
     Parameters
     ----------
     axes
@@ -135,7 +133,7 @@ def draw_points(
     colour
         Colour of line and dots.
     name
-        Name of the line.
+        Group identity of the line, and its label in a legend.
     dashes
         Style of the line.
     width
@@ -178,6 +176,6 @@ def _cut_at_zero(places: Array, values: Array) -> tuple[Array, Array]:
     """Insert the points at which a piecewise linear curve crosses zero."""
     finite = np.isfinite(values[:-1]) & np.isfinite(values[1:])
     left = np.flatnonzero(finite & ((values[:-1] < 0) != (values[1:] < 0)))
-    part = values[left] / (values[left] - values[left + 1])
-    cuts = places[left] + part * (places[left + 1] - places[left])
+    fraction = values[left] / (values[left] - values[left + 1])
+    cuts = places[left] + fraction * (places[left + 1] - places[left])
     return np.insert(places, left + 1, cuts), np.insert(values, left + 1, 0.0)

@@ -12,6 +12,7 @@ from undula.analysis.linear.results import Spectrum
 from undula.arrays import Array
 from undula.views.common import style
 
+# Number of shapes over a cycle, and of modes that are drawn with one that does not oscillate.
 _SHAPES = 16
 _OTHER_MODES = 2
 
@@ -30,11 +31,11 @@ def leading_shapes(spectrum: Spectrum) -> Array:
         Displacements Re[y(s) exp(i phase)] at evenly spaced phases from 0 on; a single shape for an
         eigenvalue that is real within its error.
     """
-    turning = spectrum.values[0].imag
-    if not abs(turning) > np.nan_to_num(spectrum.errors[0]):
+    frequency = spectrum.values[0].imag
+    if not abs(frequency) > np.nan_to_num(spectrum.errors[0]):
         return np.asarray(spectrum.modes[:1].real)
     # The phases of an eigenvalue with negative imaginary part run backwards.
-    phases = np.sign(turning) * 2 * np.pi * np.arange(_SHAPES)[:, None] / _SHAPES
+    phases = np.sign(frequency) * 2 * np.pi * np.arange(_SHAPES)[:, None] / _SHAPES
     return np.asarray(np.real(spectrum.modes[0] * np.exp(1j * phases)))
 
 
@@ -70,11 +71,11 @@ def draw_mode(figure: Figure, spectrum: Spectrum) -> None:
 
 def _draw_others(axes: Axes, spectrum: Spectrum) -> int:
     """Draw the next modes faintly, one for each complex pair; return their number."""
-    upright = [k for k in range(1, len(spectrum.values)) if spectrum.values[k].imag >= 0]
-    for k, dashes in zip(upright[:_OTHER_MODES], ("-", "--"), strict=False):
+    upper_half = [k for k in range(1, len(spectrum.values)) if spectrum.values[k].imag >= 0]
+    for k, dashes in zip(upper_half[:_OTHER_MODES], ("-", "--"), strict=False):
         look: Any = {"color": style.SHADOW, "lw": 1.2, "gid": "other mode", "zorder": 1}
         axes.plot(spectrum.modes[k].real, spectrum.s, dashes, **look)
-    return len(upright[:_OTHER_MODES])
+    return len(upper_half[:_OTHER_MODES])
 
 
 def _draw_phase_key(figure: Figure) -> None:

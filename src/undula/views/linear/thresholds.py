@@ -62,7 +62,7 @@ def threshold_figure(
         _draw_forces(upper, curve, order)
         draw_points(lower, places, curve.frequencies[order], style.Y_COLOUR, name="onset")
         set_span(upper, places)
-        _name_all(figure, upper)
+        _add_legend(figure, upper)
         _note_gaps(lower, curve)
         start_at_zero(lower)
         lower.yaxis.set_major_locator(MaxNLocator(4))
@@ -107,7 +107,7 @@ def _force_span(axes: Axes, forces: Array, searched: Array) -> tuple[float, floa
     return low, high
 
 
-def _name_all(figure: Figure, axes: Axes) -> None:
+def _add_legend(figure: Figure, axes: Axes) -> None:
     regions = [Patch(color=colour, label=name) for name, colour in _REGIONS]
     lines = axes.get_legend_handles_labels()[0]
     fitting_legend(figure, [*lines, *regions], (0.08, 0.935), handlelength=2.2)

@@ -15,7 +15,7 @@ from undula.views.ramp.series import StepSeries
 # Sizes of symbols [points]: where both directions agree, a dot lies in a ring.
 _DOT, _RING, _EDGE = 3.0, 5.4, 0.9
 #: Factor by which dots are larger in a legend.
-ALONE = 5.0 / _DOT
+LEGEND_SCALE = 5.0 / _DOT
 
 
 def draw_energies(
@@ -43,14 +43,14 @@ def draw_energies(
     for verdict in dict.fromkeys(series.verdicts):
         colour = colours[verdict]
         for up in (True, False):
-            here = (names == verdict) & (series.up == up)
-            if here.any():
+            steps = (names == verdict) & (series.up == up)
+            if steps.any():
                 look = marker(colour, up=up, size=size)
                 look["gid"] = f"{verdict}, {'up' if up else 'down'}"
                 for bound in (series.low, series.high):
-                    axes.plot(series.values[here], bound[here], **look)
-        here = names == verdict
-        bounds = series.values[here], series.low[here], series.high[here]
+                    axes.plot(series.values[steps], bound[steps], **look)
+        steps = names == verdict
+        bounds = series.values[steps], series.low[steps], series.high[steps]
         axes.vlines(*bounds, color=colour, lw=0.8, alpha=0.4, zorder=2, gid=f"{verdict}, range")
     axes.set_xlim(*series.span)
     axes.margins(y=0.06)

@@ -16,7 +16,7 @@ from undula.views.common import style
 from undula.views.common.labels import label_above
 from undula.views.common.legends import fitting_legend
 from undula.views.ramp.energies import (
-    ALONE,
+    LEGEND_SCALE,
     draw_energies,
     draw_thresholds,
     marker,
@@ -71,8 +71,8 @@ def ramp_diagram(
     --------
     >>> import undula
     >>> from undula.views import ramp_diagram
-    >>> figure = ramp_diagram([undula.load_ramp("steps.nc")])  # doctest: +SKIP
-    >>> figure.savefig("steps.png")  # doctest: +SKIP
+    >>> stored = undula.load_ramp("results/steps.nc")
+    >>> ramp_diagram([stored]).savefig("steps.png")
     """
     series = read_series(datasets)
     shown = _shown(series, thresholds)
@@ -81,7 +81,7 @@ def ramp_diagram(
         figure = Figure(figsize=(max(10.0, _COLUMN * len(series)), _HEIGHT))
         load = series[0].load if len(series) == 1 else ""
         style.write_title(figure, load if title is None else title, (_in(figure, 0.22), 0.955))
-        _name_all(figure, series, colours, thresholds=any(shown))
+        _add_legend(figure, series, colours, thresholds=any(shown))
         top = _draw_galleries(figure, series, colours)
         _draw_panels(figure, series, shown, colours, bottom=top + _LABEL / _HEIGHT)
     return figure
@@ -123,14 +123,14 @@ def _draw_galleries(
     cells = [cell for gallery in galleries for cell in gallery]
     view, words = common_view(cells), _GAP + LINE * max(len(cell.words) for cell in cells)
     # The galleries take at most half of the height.
-    wide = min(0.94 * inches, (0.5 * _HEIGHT / rows - words) / view.aspect)
-    height = (wide * view.aspect + words) / _HEIGHT
+    width_inches = min(0.94 * inches, (0.5 * _HEIGHT / rows - words) / view.aspect)
+    height = (width_inches * view.aspect + words) / _HEIGHT
     for (left, _), gallery in zip(columns, galleries, strict=True):
         for place, cell in enumerate(gallery):
             row, column = divmod(place, across)
             middle = left + (column + 0.5) * pitch
             foot = _FOOT + (rows - row - 1) * height + words / _HEIGHT
-            width = _in(figure, wide)
+            width = _in(figure, width_inches)
             draw_cell(figure, cell, view, (middle - 0.5 * width, foot, width))
     return _FOOT + rows * height
 
@@ -176,11 +176,11 @@ def _draw_panels(
             figure.text(left, _NAMES, ramp.load)
 
 
-def _name_all(
+def _add_legend(
     figure: Figure, series: Sequence[StepSeries], colours: Mapping[str, str], *, thresholds: bool
 ) -> None:
     handles: list[Artist] = [
-        Line2D([], [], label=verdict, **marker(colour, up=True, size=ALONE))
+        Line2D([], [], label=verdict, **marker(colour, up=True, size=LEGEND_SCALE))
         for verdict, colour in colours.items()
     ]
     if any(ramp.there_and_back for ramp in series):

@@ -17,7 +17,7 @@ from undula.views.run.scene import Floats
 NEEDED = ("value", "direction", "verdict", "bending_energy_min", "bending_energy_max", "shapes")
 
 # Margin at both ends of the parameter axis, as a fraction of its span.
-_ENDS = 0.02
+_MARGIN = 0.02
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class StepSeries:
     def span(self) -> tuple[float, float]:
         """Ends of the parameter axis."""
         low, high = float(self.values.min()), float(self.values.max())
-        margin = _ENDS * (high - low) or max(0.1 * abs(low), 0.1)
+        margin = _MARGIN * (high - low) or max(0.1 * abs(low), 0.1)
         return low - margin, high + margin
 
 

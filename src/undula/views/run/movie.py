@@ -88,8 +88,9 @@ def movie(
     --------
     >>> import undula
     >>> from undula.views import movie
-    >>> stored = undula.load_result("results/spinning/run.nc")  # doctest: +SKIP
-    >>> movie(stored, "spinning.mp4")  # doctest: +SKIP
+    >>> stored = undula.load_result("results/spinning/run.nc")
+    >>> movie(stored, "spinning.mp4", frames=12).name
+    'spinning.mp4'
     """
     if frames < 2 or fps < 1:
         raise InputError(f"frames = {frames}, fps = {fps}: ask for at least 2 frames and 1 fps")

@@ -50,8 +50,8 @@ def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> 
     --------
     >>> import undula
     >>> from undula.views import portrait
-    >>> stored = undula.load_result("results/spinning/run.nc")  # doctest: +SKIP
-    >>> portrait(stored).savefig("spinning.png")  # doctest: +SKIP
+    >>> stored = undula.load_result("results/spinning/run.nc")
+    >>> portrait(stored).savefig("spinning.png")
     """
     if shapes < 2:
         raise InputError(f"shapes = {shapes}: ask for at least 2")

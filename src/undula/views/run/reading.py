@@ -103,6 +103,7 @@ def _number(value: object) -> float | None:
 
 
 def _rate(value: object) -> float | None:
+    """Return a rate without its sign, None for zero and for a value that is not a number."""
     number = _number(value)
     return abs(number) if number else None
 

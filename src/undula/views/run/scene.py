@@ -12,6 +12,8 @@ Floats = NDArray[np.float64]
 PERIODS_IN_FOCUS = 4
 #: Least number of samples in a cycle for interpolation.
 SAMPLES_PER_CYCLE = 8.0
+# Least ratio of the whole run to its close view; a longer view shows nearly the same.
+_LEAST_ENLARGEMENT = 1.6
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,9 @@ class Scene:
             length = self.duration * 2 * PERIODS_IN_FOCUS / max(self.swings, 1.0)
         if self.close is not None:
             length = min(length, self.close.duration)
-        return (self.end - length, self.end) if length < self.duration / 1.6 else None
+        return (
+            (self.end - length, self.end) if length < self.duration / _LEAST_ENLARGEMENT else None
+        )
 
 
 def turning_points(values: Floats, least: float = 1e-3) -> int:

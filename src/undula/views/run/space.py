@@ -11,6 +11,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from undula.views.common import style
 from undula.views.run.scene import Floats
 
+# Least half width of the ground [L].
 _LEAST_HALF_WIDTH = 0.3
 
 
@@ -106,6 +107,7 @@ def fading_trail(axes: Any, pieces: int) -> Any:
     pieces
         Number of segments.
     """
+    # Vermilion as the tip, `style.Y_COLOUR`.
     colours = np.tile(np.array([0.835, 0.369, 0.0, 1.0]), (pieces, 1))
     colours[:, 3] = np.linspace(0.03, 0.95, pieces)
     empty = np.zeros((pieces, 2, 3))

@@ -64,8 +64,8 @@ def basin_diagram(
     --------
     >>> import undula
     >>> from undula.views import basin_diagram
-    >>> stored = undula.load_sweep("results/starts.zarr")  # doctest: +SKIP
-    >>> figure = basin_diagram(undula.basins(stored))  # doctest: +SKIP
+    >>> stored = undula.load_sweep("results/starts.zarr")
+    >>> basin_diagram(undula.basins(stored)).savefig("basins.png")
     """
     if "fraction" not in basins or not int(basins["tries"].sum()):
         raise InputError("there are no shares of verdicts; give those of a sweep with answers")

@@ -89,8 +89,8 @@ def phase_diagram(
     --------
     >>> import undula
     >>> from undula.views import phase_diagram
-    >>> stored = undula.load_sweep("results/point-loads.zarr")  # doctest: +SKIP
-    >>> phase_diagram(stored).savefig("diagram.png")  # doctest: +SKIP
+    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> phase_diagram(stored).savefig("diagram.png")
     """
     right, above = diagram_axes(store)
     with style.figure_style():

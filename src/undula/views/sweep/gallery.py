@@ -70,8 +70,8 @@ def gallery(store: xr.Dataset, *, title: str | None = None) -> Figure:
     --------
     >>> import undula
     >>> from undula.views import gallery
-    >>> stored = undula.load_sweep("results/point-loads.zarr")  # doctest: +SKIP
-    >>> gallery(stored).savefig("gallery.png")  # doctest: +SKIP
+    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> gallery(stored).savefig("gallery.png")
     """
     check_shapes(store)
     dots = [dot for dot in dots_of(store) if dot.verdict and dot.place == 0]

@@ -22,7 +22,7 @@ from undula.views.sweep.points import FORCE, Note, axis_label, diagram_axes, uni
 
 _LEFT, _RIGHT, _BOTTOM = 0.095, 0.975, 0.085
 # Top of the panels without names of boundaries, in fractions of the figure.
-_NAMES = 0.875
+_TOP = 0.875
 
 
 def draw_line(
@@ -60,7 +60,7 @@ def draw_line(
     for axes in panels:
         set_scale(axes, "x", values)
     lines = [(border, float(forces[0])) for border, _, forces in boundaries]
-    top = label_above(figure, _labels(lower, lines), _LEFT, _RIGHT) if lines else _NAMES
+    top = label_above(figure, _labels(lower, lines), _LEFT, _RIGHT) if lines else _TOP
     middle = _BOTTOM + 0.5 * (top - _BOTTOM)
     lower.set_position((_LEFT, _BOTTOM, _RIGHT - _LEFT, middle - 0.02 - _BOTTOM))
     upper.set_position((_LEFT, middle + 0.02, _RIGHT - _LEFT, top - middle - 0.02))
@@ -90,7 +90,7 @@ def _over(store: xr.Dataset, name: str, quantity: str) -> Array:
 def _draw(
     axes: Axes, values: Array, words: NDArray[np.str_], low: Array, high: Array | None
 ) -> None:
-    """Draw a symbol for each run, or a bar between two values of each run."""
+    """Draw a symbol for each run, or a bar from `low` to `high` with symbols at both ends."""
     for verdict in ordered(words[words != ""].tolist()):
         look, runs = look_of(verdict), words == verdict
         xs = np.broadcast_to(values[:, None], words.shape)[runs]
@@ -128,6 +128,7 @@ def _labels(axes: Axes, lines: Sequence[tuple[str, float]]) -> list[Label]:
 
 
 def _handles(words: NDArray[np.str_], *, ringed: bool) -> list[Artist]:
+    """Return the legend handles of the verdicts, and of the rings if there are any."""
     handles: list[Artist] = []
     for verdict in ordered(words[words != ""].tolist()):
         look = look_of(verdict)

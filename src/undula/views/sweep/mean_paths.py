@@ -76,8 +76,8 @@ def mean_paths(
     --------
     >>> import undula
     >>> from undula.views import mean_paths
-    >>> stored = undula.load_sweep("results/power-loads.zarr")  # doctest: +SKIP
-    >>> mean_paths(stored).savefig("paths.png")  # doctest: +SKIP
+    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> mean_paths(stored).savefig("paths.png")
     """
     check_shapes(store)
     x, y = diagram_axes(store)
@@ -137,9 +137,9 @@ def _draw(axes: Axes, dot: Dot, path: Array, scale: float) -> None:
 def _draw_key(figure: Figure, scale: float) -> None:
     """Draw a bar of a round length, and a key of the shades, in the upper right corner."""
     # The length is the largest of 1, 2 and 5 times a power of ten that fits into 42 points of type.
-    most = 42.0 / scale
-    power = 10.0 ** np.floor(np.log10(most))
-    length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most)
+    longest = 42.0 / scale
+    power = 10.0 ** np.floor(np.log10(longest))
+    length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest)
     axes = figure.add_axes((0.6, 0.915, 0.375, 0.035))
     axes.set_axis_off()
     axes.set(xlim=(0.0, 0.375 * _SIZE[0] * 72.0), ylim=(-1.0, 1.0))

@@ -77,8 +77,8 @@ def phase_page(
     >>> from pathlib import Path
     >>> import undula
     >>> from undula.views import phase_page
-    >>> stored = undula.load_sweep("results/point-loads.zarr")  # doctest: +SKIP
-    >>> Path("page.html").write_text(phase_page(stored))  # doctest: +SKIP
+    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> size = Path("page.html").write_text(phase_page(stored), "utf-8")
     """
     names, dots = diagram_axes(store), dots_of(store)
     points = [_point(store, dot, note_at(dot, names, contradicting)) for dot in dots]

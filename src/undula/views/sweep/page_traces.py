@@ -23,6 +23,7 @@ from undula.views.sweep.points import (
     units_of,
 )
 
+#: Names of the horizontal and the vertical axis; None for a sweep over one axis.
 Names = tuple[str, str | None]
 _DASHES = {
     "onset": "solid",
@@ -66,10 +67,10 @@ def layout(store: xr.Dataset, names: Names, dots: Sequence[Dot]) -> dict[str, An
     """
     x, y = names
     units = units_of(store)
-    above = style.frequency_label(paper_time=False) if y is None else axis_label(y, units)
+    y_label = style.frequency_label(paper_time=False) if y is None else axis_label(y, units)
     return {
         "xaxis": _axis(axis_label(x, units), store[x].values),
-        "yaxis": _axis(above, np.zeros(1) if y is None else store[y].values),
+        "yaxis": _axis(y_label, np.zeros(1) if y is None else store[y].values),
         "coloraxis": _colours(dots) if y is not None else {},
         "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
         "margin": {"l": 70, "r": 20, "t": 70, "b": 60},
@@ -222,6 +223,7 @@ def _place(store: xr.Dataset, names: Names, dot: Dot) -> tuple[float, float]:
 
 
 def _words(dot: Dot) -> str:
+    """Return the lines that are shown while the pointer is on a dot."""
     rate = f"{dot.frequency:.5g} cycles per T" if np.isfinite(dot.frequency) else ""
     several = f"{dot.tries} of {dot.of} tries" if dot.of > 1 else ""
     return "<br>".join(words for words in (rate, several) if words)
