@@ -64,7 +64,7 @@ def lay_out(path: Path, sweep: Sweep) -> None:
 
 
 def _fill(path: Path, sweep: Sweep) -> None:
-    """Make a folder with the metadata, the axes and the seeds of a sweep, and without chunks."""
+    """Make a folder with the metadata, the axes and the seeds of a sweep, and without results."""
     wanted = parse_input(sweep.tables(0))
     model = build_model(wanted)
     group = zarr.create_group(path, zarr_format=ZARR_FORMAT, attributes=_attributes(sweep))

@@ -25,7 +25,7 @@ FILAMENT: UnitNames = FILAMENT_UNITS.names()
 INK = "#222222"
 QUIET = "#6b6b6b"
 SHADOW = "#b9b9b9"
-# Backgrounds: the ground below a filament; the settled, the enlarged and the unstable interval.
+# Backgrounds: the ground below a filament; the settled, the shown and the unstable interval.
 GROUND = "#f3f3f1"
 SETTLED = "#eff2f5"
 FOCUS = "#dbe5ee"
