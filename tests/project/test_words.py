@@ -14,10 +14,6 @@ import pytest
 import undula
 
 SOURCE = Path(undula.__file__).parent
-#: Packages and files, relative to the source, that are not held to the words yet; to be emptied.
-UNFINISHED = {
-    *("analysis/maps", "analysis/ramps", "analysis/solvers", "analysis/states"),
-}
 #: Forms that no docstring and no comment has.
 BANNED_FORMS = {
     "tell": re.compile(r"\b(tells?|told|telling|has to tell)\b"),
@@ -53,13 +49,7 @@ WORDS_OF_CLAIMS = {("reproduction/claims/measures.py", "missing")}
 FORMER_CLASSES = {"Memory", "Closure", "Study", "Held", "Continuum"}
 
 
-def is_finished(path: Path) -> bool:
-    """Return True if a file of the source is held to the words."""
-    place = path.relative_to(SOURCE).as_posix()
-    return not any(place == name or place.startswith(f"{name}/") for name in UNFINISHED)
-
-
-FINISHED = sorted(path for path in SOURCE.rglob("*.py") if is_finished(path))
+SOURCES = sorted(SOURCE.rglob("*.py"))
 
 
 @cache
@@ -138,7 +128,7 @@ def place(path: Path) -> str:
     return path.relative_to(SOURCE).as_posix()
 
 
-@pytest.mark.parametrize("path", FINISHED, ids=place)
+@pytest.mark.parametrize("path", SOURCES, ids=place)
 def test_no_docstring_and_no_comment_has_a_banned_form(path: Path) -> None:
     found = [
         f"{place(path)}:{line}: {form!r} in {text[:80]!r}"
@@ -149,7 +139,7 @@ def test_no_docstring_and_no_comment_has_a_banned_form(path: Path) -> None:
     assert not found
 
 
-@pytest.mark.parametrize("path", FINISHED, ids=place)
+@pytest.mark.parametrize("path", SOURCES, ids=place)
 def test_no_docstring_or_description_begins_with_a_question_word(path: Path) -> None:
     found = [
         f"{place(path)}:{line}: {opening}"
@@ -160,7 +150,7 @@ def test_no_docstring_or_description_begins_with_a_question_word(path: Path) -> 
     assert not found
 
 
-@pytest.mark.parametrize("path", FINISHED, ids=place)
+@pytest.mark.parametrize("path", SOURCES, ids=place)
 def test_no_former_name_is_defined(path: Path) -> None:
     found = [
         f"{place(path)}:{line}: {kind} {name}"
@@ -177,7 +167,7 @@ def test_every_exception_is_a_word_that_claims_use() -> None:
 
 
 def test_every_unfinished_place_exists() -> None:
-    assert {name for name in UNFINISHED if not (SOURCE / name).exists()} == set()
+    assert {name for name in UNSOURCES if not (SOURCE / name).exists()} == set()
 
 
 @pytest.mark.parametrize(

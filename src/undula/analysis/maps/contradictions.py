@@ -33,12 +33,13 @@ class Disagreement:
     Attributes
     ----------
     at : mapping of str to float
-        Its place on the axes, and its try.
+        Its place on the axes, and the number of its replicate.
     verdict : str
+        Verdict of the run.
     sentence : str
         The verdict and the stability that it contradicts.
     near : bool
-        Whether a boundary is so near that the run may have been too short to leave the state.
+        True if a boundary is so near that the run may have been too short to leave the state.
     """
 
     at: Mapping[str, float]
@@ -48,7 +49,7 @@ class Disagreement:
 
 
 def contradictions(
-    store: xr.Dataset, borders: StabilityBoundaries, *, near: float = 0.02
+    store: xr.Dataset, boundaries: StabilityBoundaries, *, near: float = 0.02
 ) -> tuple[Disagreement, ...]:
     """Return the points of a sweep whose verdicts contradict the solved states.
 
@@ -60,7 +61,8 @@ def contradictions(
     ----------
     store : xarray.Dataset
         A stored sweep over the force and, if the boundaries have one, their parameter.
-    borders : StabilityBoundaries
+    boundaries : StabilityBoundaries
+        Those of the same model, as from `stability_boundaries`.
     near : float
         Share of a boundary's force within which a contradiction is marked as near: growth rates are
         so small there that a run of finite length may show a state that it is about to leave.
@@ -84,11 +86,11 @@ def contradictions(
     ... )  # doctest: +SKIP
     >>> [point.sentence for point in un.contradictions(sweep, boundaries)]  # doctest: +SKIP
     """
-    _check(store, borders)
+    _check(store, boundaries)
     result = []
     for place, verdict in _points(store):
         force = place[FORCE]
-        column = borders.columns[_index(borders, place)]
+        column = boundaries.columns[_index(boundaries, place)]
         sentence, edges = _contradiction(verdict, force, column)
         if sentence is not None:
             close = any(abs(force - edge) <= near * edge for edge in edges)
@@ -99,13 +101,14 @@ def contradictions(
     return tuple(result)
 
 
-def _check(store: xr.Dataset, borders: StabilityBoundaries) -> None:
+def _check(store: xr.Dataset, boundaries: StabilityBoundaries) -> None:
+    """Refuse a store without the axes of the boundaries."""
     axes = axes_of(store)
     if FORCE not in axes:
         raise InputError(f"borders are values of {FORCE}, which is no axis of the store; add it")
-    if borders.parameter is not None and borders.parameter not in axes:
+    if boundaries.parameter is not None and boundaries.parameter not in axes:
         raise InputError(
-            f"the borders are over {borders.parameter}, which is no axis of the store; solve for"
+            f"the borders are over {boundaries.parameter}, which is no axis of the store; solve for"
             " borders over one of its axes"
         )
 
@@ -121,11 +124,11 @@ def _points(store: xr.Dataset) -> Iterator[tuple[dict[str, float], str]]:
         yield place, str(verdicts.values[tuple(index)])
 
 
-def _index(borders: StabilityBoundaries, place: Mapping[str, float]) -> int:
+def _index(boundaries: StabilityBoundaries, place: Mapping[str, float]) -> int:
     """Return the index of the column that a point belongs to."""
-    if borders.parameter is None:
+    if boundaries.parameter is None:
         return 0
-    return int(np.argmin(np.abs(np.array(borders.values) - place[borders.parameter])))
+    return int(np.argmin(np.abs(np.array(boundaries.values) - place[boundaries.parameter])))
 
 
 def _contradiction(

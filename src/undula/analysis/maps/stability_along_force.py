@@ -42,6 +42,7 @@ def solved_record(model: Model) -> dict[str, Any]:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain; its own force is used.
 
     Returns
     -------

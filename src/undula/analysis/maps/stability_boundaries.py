@@ -130,6 +130,7 @@ def stability_boundaries(
         Name of the parameter, such as "load.exponent"; None for the model as it is, whose values
         then do not matter.
     values : sequence of float
+        Values of the parameter, in its unit.
     up_to : float
         The largest force of interest, in the model's unit, above 0.
     progress : callable, optional

@@ -114,6 +114,7 @@ def moving_intervals(
     model : Model
         Its own force does not matter.
     kind : {"spinning", "flapping"}
+        Kind of the state.
     onset : float
         The force at which the straight state of the links as they are is lost [B/L^2].
     up_to : float

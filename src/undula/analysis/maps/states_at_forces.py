@@ -45,6 +45,7 @@ def states_along(
     model : Model
         Its own force does not matter.
     kind : {"spinning", "flapping"}
+        Kind of the states.
     forces : sequence of float
         In the model's unit of force, in any order.
     progress : callable, optional

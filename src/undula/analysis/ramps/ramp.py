@@ -42,7 +42,7 @@ class Ramp:
     values : tuple of float
         Of the forward ramp, from 1 to 10,000, in their order.
     back : bool
-        Whether the ramp returns through the same values.
+        True if the ramp returns through the same values.
     kick : float
         Largest angle by which a link is turned before a run [rad], from 0 to pi/2.
     seed : int
@@ -189,6 +189,7 @@ def ramp(
     model : Model
         Its own value of the parameter does not matter.
     course : Ramp
+        Parameter, values and kicks of the ramp.
     start : ndarray, shape (model.size,)
         The state that the first run begins with, once it has been kicked.
     schedule : Schedule

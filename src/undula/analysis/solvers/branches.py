@@ -36,6 +36,7 @@ def follow(
     Parameters
     ----------
     state : Spinning, Flapping, Equilibrium or Periodic
+        A solved state of the branch, with its model.
     parameter : str
         Name of the parameter, such as "load.force" or "model.drag_ratio".
     to : float
@@ -44,9 +45,9 @@ def follow(
     progress : callable, optional
         Called with each value that was reached.
     enough : callable, optional
-        From a bifurcation to whether the branch may end behind it.
+        Called with each bifurcation; the branch ends behind one for which it returns True.
     stop : callable, optional
-        Returns whether to end with the states so far; the branch is not complete then.
+        Called after each state; the branch ends where it returns True, and is not complete.
 
     Returns
     -------
@@ -100,12 +101,13 @@ def follow_from_onset(
     model : Model
         Its own force does not matter.
     kind : {"spinning", "flapping"}
+        Kind of the states.
     to : float
         The force at which to end [B/L^2], beyond the Hopf force.
     progress : callable, optional
         Called with each force that was reached.
     stop : callable, optional
-        Returns whether to end with the states so far; the branch is not complete then.
+        Called after each state; the branch ends where it returns True, and is not complete.
 
     Returns
     -------

@@ -86,6 +86,7 @@ def criticality_of(model: Model, kind: str) -> Criticality | NotFound:
     model : Model
         Its own force does not matter.
     kind : {"spinning", "flapping"}
+        Kind of the states.
 
     Returns
     -------

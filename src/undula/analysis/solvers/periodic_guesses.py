@@ -97,6 +97,7 @@ def guesses_of(seen: Seen, *, axisymmetric: bool) -> tuple[Guess, ...]:
     Parameters
     ----------
     seen : Seen
+        The late part of the run.
     axisymmetric : bool
         True if shapes that differ by a turn about the axis are the same.
 

@@ -38,13 +38,19 @@ class BranchStep:
         return self.before.p < value <= self.after.p
 
     def solution_at(self, value: float, scale: float) -> Array | None:
-        """Return the solution (m,) at a value that the step passes; None if there is none.
+        """Return the solution at a value that the step passes.
 
         Parameters
         ----------
         value : float
+            Value of the parameter, within the step.
         scale : float
             Change of the parameter that counts as 1.
+
+        Returns
+        -------
+        ndarray of shape (m,) or None
+            None if Newton's method finds no solution at the value.
         """
 
         def distance(point: Point) -> float:
@@ -97,9 +103,11 @@ def reach_value(
     Parameters
     ----------
     problem : Problem
+        Equations of the branch.
     start : Point
         A solution; its tangent gives the direction.
     steps : Steps
+        Sizes of the steps in arclength.
     ends : (float, float)
         Least and largest parameter that the branch may take.
     value : float

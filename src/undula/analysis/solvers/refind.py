@@ -34,12 +34,13 @@ def refind_bifurcation(
     Parameters
     ----------
     known : Bifurcation
+        The bifurcation of the first model, with its state.
     model : Model
         With other parameters or another number of links.
     parameter : str
         Name of the parameter that the bifurcation is a value of.
     is_it : callable
-        From a bifurcation to whether it is of the right kind.
+        Returns True for a bifurcation of the right kind.
     progress : callable, optional
         Called with each value of the parameter that was reached.
 

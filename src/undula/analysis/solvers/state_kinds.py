@@ -104,11 +104,16 @@ Solved = Spinning | Flapping | Equilibrium | Periodic
 
 
 def kind_by_name(name: str) -> Kind:
-    """Return the kind of a name.
+    """Return the functions of a kind of state.
 
     Parameters
     ----------
     name : {"spinning", "flapping", "equilibrium", "periodic"}
+        Name of the kind.
+
+    Returns
+    -------
+    Kind
 
     Raises
     ------
@@ -155,6 +160,7 @@ def extrapolate(
     model : Model
         With the fewest links from which the limit is taken.
     kind : {"spinning", "flapping", "equilibrium", "periodic"}
+        Kind of the state.
     guess : optional
         Guess for the search with the fewest links, as in the function that finds such a state.
     progress : callable, optional

@@ -22,6 +22,7 @@ def require_turning(model: Model, kind: str) -> None:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     kind : {"spinning", "flapping"}
         A state that only bodies with this symmetry have.
 

@@ -82,6 +82,7 @@ def search(
     model : Model
         Its own force does not matter.
     wanted : Wanted
+        The threshold: kind of state and change of its stability.
     near : Bifurcation or None
         The same of a similar model.
     up_to : float or None
@@ -187,13 +188,13 @@ class _Searched:
     begins : float
         Least force.
     stable : bool
-        Whether the branch is stable where it begins.
+        True if the branch is stable where it begins.
     changed_at : float or None
         Force of the first gain or loss of stability.
     reached : float or None
         Greatest force; None before anything was searched.
     complete : bool
-        Whether the branch could be followed on.
+        False if the branch could not be followed to the end of its last piece.
     """
 
     kind: str

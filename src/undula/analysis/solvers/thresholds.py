@@ -44,14 +44,16 @@ def threshold(
     model : Model
         Its own force does not matter.
     kind : {"onset", "spinning-lost", "flapping-gained", "flapping-lost"}
+        "onset": the straight state, or the equilibrium of a curved filament, loses stability. The
+        others: spinning or planar flapping loses or gains it.
     converged : bool
-        Whether to extrapolate to many links.
+        True for the limit of many links, by extrapolation.
     near : Threshold, optional
         The same threshold of a similar model, next to which it is searched for first.
     up_to : float, optional
         The force at which the search ends [B/L^2], above 0; by default 20 times that of the onset.
     method : {"spectral", "modes", "discrete"}, optional
-        How the onset of a straight state is computed, as in `onset`.
+        Discretisation for the onset of a straight state, as in `onset`.
     progress : callable, optional
         Called with the number of links and each force that was reached.
 
@@ -128,7 +130,7 @@ def threshold_curve(
     progress : callable, optional
         Called with the number of values done and of all.
     stop : callable, optional
-        Returns whether to end with the values done so far.
+        Called after each value; the curve ends where it returns True.
 
     Returns
     -------

@@ -29,6 +29,7 @@ def branch_through_fold(
     model : Model
         Its own force does not matter.
     kind : {"spinning", "flapping"}
+        Kind of the states.
     end : float
         The force at which to end [B/L^2], beyond the onset.
     progress : callable, optional

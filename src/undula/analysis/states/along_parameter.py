@@ -43,9 +43,11 @@ def model_along(model: Model, kind: str, parameter: str, values: Iterable[float]
     model : Model
         Its own value of the parameter does not matter.
     kind : {"straight", "spinning", "flapping", "equilibrium", "periodic"}
+        Kind of the states.
     parameter : str
         Name of the parameter, such as "load.force".
     values : iterable of float
+        Values of the parameter, in its unit.
 
     Returns
     -------

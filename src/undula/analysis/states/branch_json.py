@@ -14,7 +14,7 @@ from undula.arrays import ComplexArray
 from undula.errors import InputError
 
 _UNKNOWN = Range(np.nan, np.nan, np.nan)
-# How many disturbances grow before and after a bifurcation, at least, by what it does to stability.
+# Least numbers of growing disturbances before and after a bifurcation, by its change of stability.
 _GROWING = {"lost": (0, 1), "gained": (1, 0), "unchanged": (1, 1)}
 
 
@@ -32,7 +32,7 @@ class StateNumbers:
         Leading growth rates of disturbances [1/T], by falling real part: one, or one in the plane
         and one out of it; none where they are not kept.
     stable : bool
-        Whether all disturbances decay.
+        True if all disturbances decay.
     """
 
     frequency: float

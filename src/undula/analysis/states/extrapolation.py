@@ -44,6 +44,7 @@ def error_of_links(
     Parameters
     ----------
     model : Model
+        Model of the filament or chain, with the links of the value.
     value : float
         The quantity on the links of the model.
     again : callable

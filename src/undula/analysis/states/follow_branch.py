@@ -73,6 +73,7 @@ def follow_branch(
     Parameters
     ----------
     family : Family
+        Equations of the branch, and the records of its solutions.
     u, p : ndarray of shape (m,) and float
         A solution of its problem.
     to : float
@@ -82,14 +83,14 @@ def follow_branch(
     progress : callable, optional
         Called with each value that was reached.
     enough : callable, optional
-        From a bifurcation to whether the branch may end behind it.
+        Called with each bifurcation; the branch ends behind one for which it returns True.
     start : Point, optional
         The same solution with the direction in which to begin, for a branch that begins at a
         constant parameter; without it the branch is followed towards `to`.
     least : float, optional
         Value of the parameter down to which the branch may turn back beyond its beginning.
     stop : callable, optional
-        Returns whether to end with the states so far.
+        Called after each state; the branch ends where it returns True.
 
     Returns
     -------

@@ -171,6 +171,7 @@ def turning_state(
     Parameters
     ----------
     model : Model
+        In space.
     y : ndarray of shape (n,)
         Positions and multipliers.
     rate : float
@@ -198,6 +199,7 @@ def rotating_spectrum(model: Model, y: Array, rate: float) -> ComplexArray:
     Parameters
     ----------
     model : Model
+        Model of the filament or chain.
     y : ndarray of shape (n,)
         Positions and multipliers.
     rate : float
