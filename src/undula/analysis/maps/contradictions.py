@@ -134,13 +134,15 @@ def _index(boundaries: StabilityBoundaries, place: Mapping[str, float]) -> int:
 def _contradiction(
     verdict: str, force: float, column: Mapping[str, StabilityIntervals]
 ) -> tuple[str | None, tuple[float, ...]]:
-    """Return a sentence for what contradicts a verdict, None if it is right, and the boundaries."""
+    """Return the contradiction in a sentence, None if the verdict is right, and its boundaries."""
     kind = KINDS.get(verdict)
     if kind is not None:
         state = column[kind]
         if force > state.searched_to or state.is_stable_at(force):
             return None, ()
         return _sentence(state, force), state.edges
+    # Other motions occur only where spinning or flapping exists; if it is unknown where one of them
+    # begins, nothing is contradicted.
     begins = [state.begins for state in column.values() if state.kind != "straight"]
     if verdict == UNDECIDED or any(begin is None or begin <= force for begin in begins):
         return None, ()
@@ -149,6 +151,7 @@ def _contradiction(
 
 
 def _sentence(state: StabilityIntervals, force: float) -> str:
+    """Return why a state cannot be seen at a force."""
     name = _NAMES[state.kind]
     if state.begins is not None and force < state.begins:
         return f"{name} begins at force {state.begins:.6g}"

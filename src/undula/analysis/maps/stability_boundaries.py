@@ -51,9 +51,9 @@ class StabilityBoundaries:
     parameter : str or None
         Its name; None for a single model.
     values : tuple of float
-        Its values; of a single model one, which is NaN.
+        Its values, in its unit; a single NaN for a single model.
     up_to : float
-        The largest force of interest.
+        The largest force of interest [B/L^2].
     columns : tuple of mapping of str to StabilityIntervals
         For each value the intervals of "straight", "spinning" and "flapping".
     """
@@ -132,7 +132,7 @@ def stability_boundaries(
     values : sequence of float
         Values of the parameter, in its unit.
     up_to : float
-        The largest force of interest, in the model's unit, above 0.
+        The largest force of interest [B/L^2], above 0.
     progress : callable, optional
         Called with the number of values done and of all.
 
@@ -179,7 +179,7 @@ def intervals_at(
     """
     try:
         here = model if parameter is None else changed(model, parameter, value)
-        # The runs of a diagram are of links as they are, and so are the other boundaries.
+        # On the links as they are, like the runs of a diagram and the other boundaries.
         straight_onset = onset(here, method="discrete", later=_LATER)
     except (InputError, ArithmeticError, np.linalg.LinAlgError) as error:
         return {kind: unknown_intervals(kind, str(error)) for kind in ("straight", *_MOVING)}
@@ -187,12 +187,13 @@ def intervals_at(
     return column | {kind: _moving(here, kind, straight_onset.force, up_to) for kind in _MOVING}
 
 
-def _moving(model: Model, kind: str, onset: float | None, up_to: float) -> StabilityIntervals:
+def _moving(model: Model, kind: str, onset_force: float | None, up_to: float) -> StabilityIntervals:
+    """Return the intervals of spinning or flapping, or the reason why they are not known."""
     if kind == "spinning" and model.dimension != 3:
         return unknown_intervals(kind, "a confined model cannot spin")
-    if onset is None:
+    if onset_force is None:
         return unknown_intervals(kind, "the straight state stays stable")
     try:
-        return moving_intervals(model, kind, onset, up_to)
+        return moving_intervals(model, kind, onset_force, up_to)
     except (InputError, ArithmeticError, np.linalg.LinAlgError) as error:
         return unknown_intervals(kind, str(error))

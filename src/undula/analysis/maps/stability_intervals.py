@@ -20,8 +20,8 @@ from undula.analysis.states.follow_branch import Progress, unstable
 from undula.analysis.states.not_found import NotFound
 from undula.models.model import Model
 
-# Number of growing disturbances at which a branch is left: it would have to lose all of them again,
-# and meets many more bifurcations, each located, before it does.
+# Number of growing disturbances at which following ends: the branch would pass many more
+# bifurcations, each of them located, before it could be stable again.
 _MOST_GROWING = 6
 
 
@@ -32,7 +32,7 @@ class Change:
     Attributes
     ----------
     force, error : float
-        The force, and the error to which it was located on the links as they are [B/L^2].
+        The force, and the error of its location on the links as they are [B/L^2].
     frequency : float
         Of the state there [cycles per T].
     """
@@ -89,6 +89,7 @@ def unknown_intervals(kind: str, reason: str) -> StabilityIntervals:
 def straight_intervals(onset: Onset) -> StabilityIntervals:
     """Return the intervals on which the straight state of the links as they are is stable."""
     crossings = [*([onset.hopf] if onset.hopf else []), *onset.later]
+    # An interval ends where the first pair begins to grow, and begins where the last one ceases to.
     ends, growing = [0.0], 0
     for crossing in crossings:
         before, growing = growing, growing + (1 if crossing.growth_slope > 0.0 else -1)
@@ -127,13 +128,11 @@ def moving_intervals(
     StabilityIntervals
     """
     start = START * onset
-    # One state of an unjudged branch: neither a run nor a guess is needed.
+    # A state on the branch from the Hopf point, which takes neither a run nor a guess.
     state = states_along(model, kind, [start]).get(start)
     if state is None or isinstance(state, NotFound):
         return unknown_intervals(kind, state.reason if state else f"no {kind} at force {start:.6g}")
-    folded = branch_through_fold(model, kind, start)
-    if isinstance(folded, NotFound) or (folded is not None and not folded.complete):
-        folded = None
+    folded = _subcritical_part(model, kind, start)
     folds = [point for point in folded.bifurcations if point.kind == "fold"] if folded else []
     fold = min(folds, key=lambda point: point.value, default=None)
     branch = None
@@ -159,6 +158,14 @@ def moving_intervals(
     )
 
 
+def _subcritical_part(model: Model, kind: str, end: float) -> Branch[Any] | None:
+    """Return the branch through its fold up to a force; None if it has none or is incomplete."""
+    folded = branch_through_fold(model, kind, end)
+    if folded is None or isinstance(folded, NotFound) or not folded.complete:
+        return None
+    return folded
+
+
 def _grows_too_much(bifurcation: Bifurcation[Any]) -> bool:
     return bifurcation.unstable_after >= _MOST_GROWING
 
@@ -177,7 +184,7 @@ def _changes(branch: Branch[Any] | None) -> list[Bifurcation[Any]]:
 def _intervals(
     changes: Sequence[Bifurcation[Any]], begins: float, *, stable: bool
 ) -> tuple[tuple[float, float], ...]:
-    """Return the stable intervals of a branch that is stable from its beginning on or not."""
+    """Return the stable intervals between changes of stability; `stable` is that at `begins`."""
     ends = [begins] if stable else []
     ends += [point.value for point in changes]
     if len(ends) % 2:

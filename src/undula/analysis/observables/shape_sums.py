@@ -64,6 +64,7 @@ def align(first: Any, second: Any, weights: Any, distance: Any, angle: Any) -> N
         a, b = first[min(i, first.shape[0] - 1)], second[min(i, second.shape[0] - 1)]
         along, across = 0.0, 0.0
         for k in range(weights.shape[0]):
+            # The best rotation is by the argument of the correlation of x + i y.
             along += weights[k] * (a[k, 0] * b[k, 0] + a[k, 1] * b[k, 1])
             across += weights[k] * (a[k, 1] * b[k, 0] - a[k, 0] * b[k, 1])
         angle[i] = math.atan2(across, along)
@@ -82,6 +83,7 @@ def largest_aligned_distance(nodes: Any, reference: Any, weights: Any) -> Any:
     """Return the largest distance of shapes from reference (N + 1, 3) after the best rotations."""
     repeated = np.repeat(weights, 3)
     rows = nodes.reshape(nodes.shape[0], repeated.shape[0])
+    # Of the reference: x and y as they are, turned by a right angle, and z.
     along, across, heights = (
         np.zeros(repeated.shape),
         np.zeros(repeated.shape),
@@ -132,7 +134,7 @@ def squares_in_plane(nodes: Any, weights: Any, angle: Any) -> Any:
 
 @entry("nodes (m, k, 3)")
 def link_squares(nodes: Any) -> Any:
-    """Return the least and the largest square of a link's length [L^2]."""
+    """Return the least and the largest square of a link's length over all shapes [L^2]."""
     least, largest = np.inf, 0.0
     for i in range(nodes.shape[0]):
         for k in range(1, nodes.shape[1]):
@@ -169,7 +171,7 @@ def largest_bend(nodes: Any) -> Any:
 
 @entry("nodes (m, k, 3), out (k - 1)")
 def lowest_links(nodes: Any, out: Any) -> None:
-    """Write to out (N,) the least z component of each link's direction."""
+    """Write to out (N,) the least z component of the direction of each link, over all shapes."""
     out[:] = 1.0
     for i in range(nodes.shape[0]):
         for k in range(out.shape[0]):

@@ -18,15 +18,15 @@ def hann(count: int, power: int = 1) -> Array:
 
     Parameters
     ----------
-    count
+    count : int
         Number of cells, at least 1.
-    power
-        Power of the weight, at least 1.
+    power : int
+        Power of the Hann window sin^2, at least 1.
 
     Returns
     -------
-    Array
-        Shape ``(count,)``, read-only, with sum 1.
+    ndarray of shape (count,)
+        Read-only, with sum 1.
     """
     weights = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** (2 * power)
     weights = np.asarray(weights / np.sum(weights), dtype=np.float64)
@@ -39,10 +39,10 @@ def spectral_peak(time: Instants, signals: ComplexArray) -> float:
 
     Parameters
     ----------
-    time
-        Equally spaced times [T], shape ``(m,)``, m at least 2.
-    signals
-        Shape ``(m, channels)``.
+    time : ndarray of shape (m,)
+        Equally spaced times [T], m at least 2.
+    signals : ndarray of shape (m, channels)
+        Samples of complex signals, whose means are removed.
 
     Returns
     -------

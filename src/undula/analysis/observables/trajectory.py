@@ -51,18 +51,18 @@ class Observed:
         return cls(model, unknowns, *model.energies(unknowns))
 
     @cached_property
-    def _all(self) -> Energetics:
+    def _with_powers(self) -> Energetics:
         return self.model.observe(self.unknowns)
 
     @property
     def active_power(self) -> Array:
         """Power put in by the load [B/(L T)], shape (m,)."""
-        return self._all.active_power
+        return self._with_powers.active_power
 
     @property
     def dissipation(self) -> Array:
         """Power dissipated by drag [B/(L T)], shape (m,)."""
-        return self._all.dissipation
+        return self._with_powers.dissipation
 
     def part(self, chosen: slice) -> Self:
         """Return the energies and powers of some of the samples.
@@ -71,6 +71,10 @@ class Observed:
         ----------
         chosen : slice
             Indices of the samples.
+
+        Returns
+        -------
+        Observed
         """
         return type(self)(
             self.model,
@@ -116,7 +120,7 @@ class Motion:
         time : ndarray, shape (m,)
             Equally spaced times [T].
         states : ndarray, shape (m, n + RATES)
-            Unknowns and integrals at these times.
+            Unknowns at these times, then the integrals: rotation angle, work and loss.
 
         Returns
         -------
@@ -152,7 +156,8 @@ class Motion:
 
 def _nodes(model: Model, states: Array) -> Shapes:
     """Return the nodes (m, N + 1, 3) of samples (m, n + RATES)."""
-    # The nodes of the vector 1, 2, 3, ... are the indices of their coordinates, plus 1.
+    # The nodes of the vector 1, 2, 3, ... are the indices of their coordinates plus 1, and 0 for
+    # coordinates that are fixed at 0: `gather` reads a negative index as 0.
     numbered = np.arange(1.0, states.shape[1] - RATES + 1.0)
     columns = model.nodes(model.positions(numbered)).astype(np.int64) - 1
     nodes = np.empty((len(states), *columns.shape))

@@ -93,8 +93,8 @@ class Ramp:
         Raises
         ------
         InputError
-            There is no such parameter, it is a whole number, or a value is out of its range; or
-            joints wind up, and their full turns would be lost between two steps.
+            There is no such parameter, it is a whole number, or a value is out of its range; or the
+            springs count full turns, which would be lost between two steps.
         """
         if model.unwrapped:
             raise InputError(
@@ -104,7 +104,7 @@ class Ramp:
         value_of(model, self.parameter)
         models = [changed(model, self.parameter, value) for value, _ in self.targets]
         for model in models:
-            model.straight()  # of which extensible links may be incapable
+            model.straight()  # fails if the load exceeds the tensile stiffness of the links
         return models
 
 
@@ -122,19 +122,21 @@ class Step:
     direction : {"up", "down"}
         Direction in which the parameter changes.
     status, cause : str
-        Ending of the run, and why it failed if it did.
+        Ending of the run; cause and remedy of a failure.
     verdict, reason : str
         Name of its final motion, and the reason in a sentence.
     frequency, rotation_frequency, shape_frequency : float
-        As of a run, each with its error [cycles per T]; the frequency without its sign.
+        As of a `Run`, each with its error in the next field [cycles per T]; the first one has no
+        sign.
     bending_energy, tip_radius, tip_height : Range
     planarity : float
         Share of the motion out of its best plane.
     power_balance_error, length_error : float
+        Relative errors of the energy balance and of the lengths of the links.
     steps : int
         Steps of the integrator.
     time : float
-        Time that the run took to settle and to be observed, or that it was given [T].
+        Time at which the run ended [T].
     seconds : float
         Wall time of the run.
     nodes : ndarray, shape (N + 1, 3)
@@ -142,8 +144,8 @@ class Step:
     shape_times : ndarray, shape (m,)
         Times of the shapes [T].
     shapes : ndarray, shape (m, N + 1, 3)
-        Samples about evenly over the last period [L]; of a motion that is not periodic over the
-        period of the strongest line of its spectrum, of a straight one over the whole window.
+        Nodes at times spread evenly over the last period [L]; without a period, over that of the
+        strongest line of the spectrum; of a straight filament, over the whole late window.
     """
 
     value: float
@@ -230,7 +232,7 @@ def ramp(
 
 
 def _turned(model: Model, nodes: Nodes, course: Ramp, number: int) -> State:
-    """Return the state with these nodes and links turned by the kick of a step."""
+    """Return the state with these nodes after the kick of a step."""
     if course.kick == 0.0:
         return model.from_nodes(nodes)
     # A seed of its own for each step, so that a ramp can be continued at any of them.
@@ -239,6 +241,7 @@ def _turned(model: Model, nodes: Nodes, course: Ramp, number: int) -> State:
 
 
 def _step(run: Run, value: float, direction: str, began: float) -> Step:
+    """Return the record of a run that began at a wall time [s]."""
     summary, (times, shapes) = run.summary(), last_period(run)
     # A step has the numbers of a run's summary under the same names.
     same = {field.name: summary[field.name] for field in fields(Step) if field.name in summary}

@@ -1,6 +1,6 @@
 """Changes of the verdict along a ramp, and hysteresis between its two directions.
 
-A verdict is only a word here: "undecided" is treated like the others.
+Verdicts are compared as words; "undecided" is one of them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,10 @@ class Regime:
 
     Attributes
     ----------
-    direction, verdict : str
+    direction : {"up", "down"}
+        Direction in which the parameter changes.
+    verdict : str
+        Verdict of all the steps.
     start, end : float
         Values of the first and of the last step, in the order of the steps.
     steps : int
@@ -36,7 +39,8 @@ class RegimeChange:
 
     Attributes
     ----------
-    direction : str
+    direction : {"up", "down"}
+        Direction in which the parameter changes.
     before, after : str
         The verdicts.
     start, end : float
@@ -77,7 +81,7 @@ class Hysteresis:
 def by_direction(steps: Sequence[Step]) -> Mapping[str, Sequence[Step]]:
     """Return the forward steps and, if there are any, the steps back, by direction.
 
-    The steps back begin with the last forward step.
+    The steps back begin with the last forward step, at which the ramp turns.
     """
     if not steps:
         return {}
@@ -98,7 +102,7 @@ def regimes(steps: Sequence[Step]) -> tuple[Regime, ...]:
 
 
 def regime_changes(steps: Sequence[Step]) -> tuple[RegimeChange, ...]:
-    """Return the changes between the regimes of a ramp, direction by direction."""
+    """Return the changes between neighbouring regimes of a ramp, direction by direction."""
     return tuple(
         RegimeChange(earlier.direction, earlier.verdict, later.verdict, earlier.end, later.start)
         for earlier, later in pairwise(regimes(steps))

@@ -41,8 +41,8 @@ MIN_SAMPLES = 8
 MIN_STEADY_SAMPLES = 32
 # Least quotient of a positive Lyapunov exponent and its error.
 SIGNIFICANCE_FACTOR = 3.0
-# Least exponent of the divergence of neighbouring motions from one maximum of the displacement to
-# the next.
+# Least exponent of the divergence of neighbouring motions in chaos, from one maximum of the
+# displacement to the next.
 MIN_DIVERGENCE = 0.05
 
 
@@ -74,7 +74,7 @@ def first_verdict(
     axisymmetric
         True if motions of the body are compared up to rotations about z.
     known_fall
-        Decay of the displacement, if it has been measured and is no relaxation to straight.
+        Decay of the displacement, if it has been measured and does not end straight.
 
     Returns
     -------
@@ -167,25 +167,27 @@ def with_exponents(verdict: Verdict, exponents: Lyapunov) -> Verdict:
         With the exponent in its evidence.
     """
     value, error = exponents.beyond_symmetry, exponents.beyond_symmetry_error
+    uncertainty = SIGNIFICANCE_FACTOR * error
     divergence = f"neighbouring motions part at {value:.3g} +- {error:.1g} /T"
     extended = replace(
         verdict, evidence=verdict.evidence | {"lyapunov": value, "lyapunov_error": error}
     )
     late = verdict.late
     if late is None or late.recurrence is None:
-        parts = value > SIGNIFICANCE_FACTOR * error
-        return replace(extended, reason=f"{verdict.reason}; {divergence}") if parts else extended
+        diverges = value > uncertainty
+        return replace(extended, reason=f"{verdict.reason}; {divergence}") if diverges else extended
+    # Mean time between maxima of the displacement.
     interval = float(late.time[-1] - late.time[0]) / late.recurrence.maxima
-    if value < -SIGNIFICANCE_FACTOR * error:
+    if value < -uncertainty:
         # A torus has a third exponent of 0, chaos a positive one.
         reason = f"irregular so far, but neighbouring motions join at {-value:.3g} /T: run longer"
         return replace(
             extended, reason=reason, longer=float(np.log(1.0 / MAX_RECURRENCE_DISTANCE)) / -value
         )
-    if value > SIGNIFICANCE_FACTOR * error and value * interval > MIN_DIVERGENCE:
+    if value > uncertainty and value * interval > MIN_DIVERGENCE:
         reason = f"irregular: {divergence}, by exp({value * interval:.2g}) from maximum to maximum"
-        return _named(extended, Name("chaotic", reason, value / (SIGNIFICANCE_FACTOR * error)))
-    if (value + SIGNIFICANCE_FACTOR * error) * interval < MIN_DIVERGENCE:
+        return _named(extended, Name("chaotic", reason, value / uncertainty))
+    if (value + uncertainty) * interval < MIN_DIVERGENCE:
         return _named(extended, name_quasi_periodic(late, divergence))
     return replace(extended, reason=f"irregular, and {divergence}: run longer")
 

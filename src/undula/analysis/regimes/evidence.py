@@ -30,10 +30,11 @@ MAX_STEADY_CHANGE = 5e-3
 MIN_TURNS = 1.0
 # Least factor of growth over the window; a slow change of amplitude may grow by less.
 MIN_GROWTH_FACTOR = 1.2
-# Least difference of the halves of the window, as a share of the change of shape, of a drift (about
-# 2 for a steady drift, at most 0.01 for an oscillation).
+# Least difference of the halves of the window, relative to the change of shape, that shows a drift:
+# a steady drift has about 2, an oscillation at most 0.01.
 MIN_TRANSIENT_DRIFT = 0.2
-# Largest relative difference of the rates in the halves of the window in exponential growth.
+# Largest difference of the rates in the halves of the window, relative to the rate, at which growth
+# counts as exponential.
 MAX_RATE_DIFFERENCE = 0.3
 #: Numbers in the record of a run, where they were measured.
 _NUMBERS = (
@@ -113,7 +114,7 @@ class Evidence:
 
     @cached_property
     def drift(self) -> float:
-        """Difference between the two halves of the window."""
+        """Difference between the two halves of the window, see `stationary_window.drift`."""
         return drift(self.away, self.nodes, self.bending_energy)
 
     @cached_property
@@ -125,7 +126,7 @@ class Evidence:
 
     @cached_property
     def periods(self) -> float:
-        """Number of periods of that frequency in the window; 0 without a frequency."""
+        """Number of periods of `frequency` in the window; 0 without a frequency."""
         return self.frequency.value * self.span if self.frequency else 0.0
 
     @cached_property

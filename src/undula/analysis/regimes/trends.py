@@ -1,7 +1,7 @@
 """Slow changes of a motion, from a comparison of the two halves of a window.
 
-A small part that grows may be the onset of another motion, a modulation that shrinks the end of
-one. The halves of a window show either long before the window as a whole does.
+A small part that grows may be the onset of another motion; a modulation that shrinks may be the end
+of one. The halves of a window show such a change long before the window as a whole does.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from undula.analysis.observables.spectrum import hann
 from undula.arrays import Array, Shapes
 
 # Number of parts of a window that are compared, and least relative fall from the first to the last:
-# cut beats change the share of a settled motion by a hundredth.
+# incomplete beats alone change the share of a settled motion by a hundredth.
 _PART_COUNT, _MIN_FALL = 4, 0.05
 
 

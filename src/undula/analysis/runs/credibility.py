@@ -28,8 +28,8 @@ from undula.models.model import Model
 #: Largest relative error of the energy balance or of the lengths: five times the one hundredth that
 #: the coarsest tolerances allow.
 MAX_BALANCE_ERROR = 0.05
-#: Least energy put through, as a share of the stored energy, for a meaningful balance: a naturally
-#: curved filament that hardly moves has less, and its balance is one of round-off.
+#: Least energy put in or dissipated, as a share of the stored energy, for a meaningful balance: for
+#: a naturally curved filament that hardly moves, the balance is one of round-off.
 MIN_THROUGHPUT_SHARE = 1e-6
 #: Least amplitude of a classified motion [atol]: the error of a step is then a hundredth, as it is
 #: for the largest relative tolerance.
@@ -37,8 +37,8 @@ MIN_AMPLITUDE_IN_ATOL = 100.0
 #: Names that do not rest on small changes of shape.
 ROBUST_NAMES = (STRAIGHT, "spinning", "planar flapping", "at rest", "windmilling")
 #: Largest error of a step, relative to the motion, for the other names: errors of 1e-4 can sustain
-#: an oscillation of a spinning shape, errors of 1e-6 do not. This value allows 1e-5, at which few
-#: runs were tried, with a margin.
+#: an oscillation of a spinning shape, errors of 1e-6 do not. Few runs were tried in between; this
+#: value allows 1e-5 with a margin.
 MAX_STEP_ERROR = 3e-5
 #: Largest motion in a run to rest whose state is tested for stability [rad]: a larger motion shows
 #: an instability by itself.
@@ -96,7 +96,7 @@ class Grounds:
         )
 
     def _amplitude(self, verdict: Verdict, motion: Motion) -> float:
-        """Return the amplitude of the motion [rad], that of one sample if it is large enough."""
+        """Return the amplitude of the motion [rad]; one sample suffices if it is large enough."""
         straight = self.model.nodes(self.model.straight())
         sample = self.whole.nodes[:1] if verdict.name == STRAIGHT else motion.nodes[-1:]
         size = _largest_inclination(self.model, sample, straight)
@@ -106,15 +106,16 @@ class Grounds:
         return _largest_inclination(self.model, seen.nodes, straight)
 
     def _unsound(self, verdict: Verdict) -> Verdict | None:
+        """Return the withdrawn verdict if the energy or the lengths are not conserved."""
         if self._balance() > MAX_BALANCE_ERROR:
-            what = f"its power balance is off by {self.errors.power_balance_error:.2g}"
+            defect = f"its power balance is off by {self.errors.power_balance_error:.2g}"
         elif self.errors.length_error > MAX_BALANCE_ERROR and not self.model.extensible:
-            what = f"its links change their length by {self.errors.length_error:.2g}"
+            defect = f"its links change their length by {self.errors.length_error:.2g}"
         else:
             return None
         tolerances = f"rtol = {self.schedule.rtol:g} and atol = {self.schedule.atol:g}"
         return _doubted(
-            verdict, f"{what}, which no motion of the body is: {tolerances} are too large"
+            verdict, f"{defect}, which no motion of the body is: {tolerances} are too large"
         )
 
     def _balance(self) -> float:
@@ -127,6 +128,7 @@ class Grounds:
         return self.errors.power_balance_error if through > MIN_THROUGHPUT_SHARE * stored else 0.0
 
     def _small(self, verdict: Verdict, size: float) -> Verdict | None:
+        """Return the withdrawn verdict if the motion is so small that the integrator damps it."""
         atol = self.schedule.atol
         moves = verdict.name != "at rest" and size > ROUND_OFF_INCLINATION
         if not moves or size > MIN_AMPLITUDE_IN_ATOL * atol:
@@ -139,6 +141,7 @@ class Grounds:
         )
 
     def _coarse(self, verdict: Verdict, size: float) -> Verdict | None:
+        """Return the withdrawn verdict if errors of the steps may sustain such a motion."""
         # Error of a step relative to the motion.
         error = self.schedule.rtol + self.schedule.atol / size
         if verdict.name in ROBUST_NAMES or error <= MAX_STEP_ERROR:
@@ -150,6 +153,7 @@ class Grounds:
         )
 
     def _unstable(self, verdict: Verdict) -> Verdict | None:
+        """Return the withdrawn verdict if the equilibrium is unstable."""
         if verdict.name not in RESTING_NAMES or self.known_stable:
             return None
         nodes = self.whole.nodes
@@ -175,12 +179,12 @@ class Grounds:
             f"{doubt}: give a larger amplitude of the start, or a smaller atol, to see them",
         )
         straight, last = self.model.nodes(self.model.straight()), self.whole.nodes[-1:]
-        left = 0.0
+        remaining = 0.0
         if verdict.name == STRAIGHT:
-            left = _largest_inclination(self.model, last, straight)
-        detectable = left > MIN_AMPLITUDE_IN_ATOL * self.schedule.atol
-        # Time in which the remaining displacement grows to the length of the filament.
-        longer = math.log(max(math.e, 1.0 / left)) / rate if detectable else None
+            remaining = _largest_inclination(self.model, last, straight)
+        detectable = remaining > MIN_AMPLITUDE_IN_ATOL * self.schedule.atol
+        # Time in which the remaining inclination grows to 1 rad.
+        longer = math.log(max(math.e, 1.0 / remaining)) / rate if detectable else None
         return replace(
             withdrawn, evidence=withdrawn.evidence | {"leading_rate": rate}, longer=longer
         )

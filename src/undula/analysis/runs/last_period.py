@@ -59,10 +59,9 @@ def _samples(run: Run, periods: int, count: int) -> Array:
     period = (
         length if run.verdict.name == "straight" else min(length, periods * _period(run, window))
     )
-    wanted = window.time[-1] - period * np.arange(count - 1, -1, -1) / count
-    return np.asarray(
-        np.rint(np.interp(wanted, window.time, np.arange(window.time.size))).astype(int)
-    )
+    times = window.time[-1] - period * np.arange(count - 1, -1, -1) / count
+    indices = np.interp(times, window.time, np.arange(window.time.size))
+    return np.asarray(np.rint(indices).astype(int))
 
 
 def _period(run: Run, window: Motion) -> float:

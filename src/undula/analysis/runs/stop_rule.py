@@ -9,8 +9,8 @@
 | `when_irregular` | Is it a motion that never repeats itself? | `Continue`, `Tighten`, `Stop` |
 | `when_cut_short` | Has the user, or the budget, ended it? | `Continue`, `Stop` |
 
-`Simulation` applies the decisions; `undula.analysis.runs.integrate` asks for those that take a
-classification.
+`Simulation` applies the decisions; `undula.analysis.runs.integrate` calls the rules that need a
+classification or the clock.
 """
 
 import math
@@ -32,9 +32,9 @@ from undula.analysis.runs.settled_motion import Settled
 from undula.analysis.runs.settling import NOISE_IN_RTOL
 from undula.arrays import Array
 
-#: Number of beats or turns for which a settled motion is observed, and one with changes as small as
-#: errors of the integration. A motion that relaxes slowly, such as a beat towards its plane, is
-#: misclassified in a shorter window (docs/notes/points.md).
+#: Number of beats or turns for which a settled motion is observed, and the same for one whose
+#: remaining changes are as small as integration errors. A motion that relaxes slowly, such as a
+#: beat towards its plane, is misclassified in a shorter window (docs/notes/points.md).
 OBSERVED_CYCLES, OBSERVED_CYCLES_AT_NOISE = 12, 6
 #: Beats in a trial window, from which planar flapping alone is accepted, and number of trials.
 TRIAL_CYCLES, TRIAL_WINDOWS = 3, 6
@@ -42,8 +42,8 @@ TRIAL_CYCLES, TRIAL_WINDOWS = 3, 6
 REST_OBSERVED = 1.25
 #: The only verdict accepted from a trial window.
 TRIAL_VERDICT = "planar flapping"
-#: Relative tolerance of the steps that other verdicts of a run to the solved state rest on: the
-#: errors of larger steps may keep a motion alive.
+#: Largest relative tolerance for the other verdicts of a run until "solved": the errors of larger
+#: steps may sustain a motion.
 TIGHT_RTOL = 1e-6
 
 
@@ -75,7 +75,7 @@ class Observation:
         """Time until which the motion is observed, to measure its frequencies [T]."""
         if self.settled.kind == "still":
             return REST_OBSERVED * self.settled.since
-        # Two mirror images a beat.
+        # Up to reflection a beat recurs after half its period.
         cycle = 2.0 * self.settled.period if self.settled.period else self.settled.turn
         return self.settled.since + self.cycles * (cycle or 0.0)
 
@@ -249,6 +249,7 @@ def _next_window(observation: Observation, window: Motion) -> Observation:
     if observation.trial_windows == 1:
         return replace(observation, cycles=OBSERVED_CYCLES, trial_windows=0)
     settled = observation.settled
+    # The next window begins with the second half of this one, or where the motion is planar.
     half = 0.5 * (float(window.time[-1]) - settled.since)
     since = settled.since + half * (1.0 + _halves_until_flat(out_of_plane(window.nodes)))
     return replace(
@@ -259,7 +260,7 @@ def _next_window(observation: Observation, window: Motion) -> Observation:
 
 
 def _halves_until_flat(share: Halves) -> float:
-    """Return the number of half windows after which a motion is planar, if it flattens at all."""
+    """Return the number of half windows until a motion is planar; 0 if it does not flatten."""
     if not share.first > MIN_GROWTH_FACTOR * share.last > MIN_GROWTH_FACTOR * PLANAR_TOLERANCE:
         return 0.0
     return math.log(share.last / PLANAR_TOLERANCE) / math.log(share.first / share.last)

@@ -14,7 +14,7 @@ from undula.errors import InputError
 from undula.models.model import Model
 from undula.numerics.continuation.arclength import Steps, advance
 
-# Scales of the parameter in the interval that is followed.
+# Length of the interval that is followed, in scales (changes of the parameter that count as 1).
 _SCALES = 8.0
 # Arclength between a Hopf point and the first point of a branch.
 _FIRST_ARCLENGTH = 0.03
@@ -52,8 +52,8 @@ def follow(
     Returns
     -------
     Branch or NotFound
-        The latter if the parameter breaks the rotational symmetry of the body and the same body
-        with directors has no such state.
+        The latter if the parameter breaks the rotational symmetry of the body and no such state is
+        found once its equations contain the directors.
 
     Raises
     ------
@@ -69,17 +69,19 @@ def follow(
     >>> branch.complete, all(state.stable for state in branch.states)
     (True, True)
     """
-    kind, start = kind_of_state(state), value_of(state.model, parameter)
+    solver, start = kind_of_state(state), value_of(state.model, parameter)
     model = model_along(state.model, state.kind, parameter, (start, to))
     if to == start:
         raise InputError(f"{parameter} is {start} already; give another value to follow to")
-    first = state if model is state.model else with_unknowns_of(model, state, parameter, kind.find)
+    first: Solved | NotFound = state
+    if model is not state.model:
+        first = with_unknowns_of(model, state, parameter, solver.find)
     if isinstance(first, NotFound):
         return first
     scale = abs(to - start) / _SCALES
-    family = kind.family(first, parameter, scale)
+    family = solver.family(first, parameter, scale)
     return follow_branch(
-        family, kind.unknowns(first), start, to, Steps(scale=scale), progress, enough, stop=stop
+        family, solver.unknowns(first), start, to, Steps(scale=scale), progress, enough, stop=stop
     )
 
 
@@ -93,7 +95,7 @@ def follow_from_onset(
 ) -> Branch[Any] | NotFound:
     """Follow the branch of a kind of state from the Hopf point of the straight state.
 
-    The first point lies at a small amplitude next to the Hopf point. A subcritical branch goes to
+    The first point lies at a small amplitude next to the Hopf point. A subcritical branch leads to
     smaller forces first and turns in a fold.
 
     Parameters

@@ -14,13 +14,14 @@ class Threshold:
 
     Attributes
     ----------
-    kind : str
+    kind : {"onset", "spinning-lost", "flapping-gained", "flapping-lost"}
+        The change of stability.
     value : float or None
-        The force [B/L^2]: of the body if `links` are several or empty, else on these links. None if
-        the threshold does not exist.
+        The force [B/L^2]: of the continuous body if `links` are several or empty, else on these
+        links. None if the threshold was not found.
     error : float or None
-        Its estimated error against the body that the numbers stand for, of links and solver
-        together; None if that could not be estimated.
+        Estimated error of the value against the body that the links stand for, of links and solver
+        together [B/L^2]; None if it could not be estimated.
     frequency : float or None
         Of the state there [cycles per T].
     second_frequency : float or None
@@ -32,11 +33,11 @@ class Threshold:
     at : Bifurcation or None
         The bifurcation itself, on the finest links.
     links : tuple of int
-        The numbers of links that it was solved for with; empty for the method of the continuum.
+        Numbers of links on which the threshold was solved for; empty for the continuum.
     solver_error : float or None
-        Its estimated error on these links.
+        Estimated error of the value on these links [B/L^2].
     searched_to : float or None
-        The force at which the search ended without it, where a farther one might find it.
+        The force at which the search ended without a threshold, if a farther search might find one.
     """
 
     kind: str

@@ -1,8 +1,8 @@
 """The search for a threshold: the branch of a state followed from its beginning up to a force.
 
-A subcritical branch is followed from the onset through its fold first, others from a little above
-the onset. Larger forces are reached in pieces, each of them as long as all before, so that the
-steps do not grow with the force that is asked for.
+A subcritical branch is followed from the onset through its fold, a supercritical one from a little
+above the onset. Large forces are reached in pieces, each as long as all before it, so that the
+first steps do not grow with the largest force.
 """
 
 from collections.abc import Iterator, Mapping
@@ -23,7 +23,7 @@ from undula.models.model import Model
 
 #: Force up to which thresholds are searched by default, in multiples of the onset.
 FARTHEST = 20.0
-# Typical onset of the tip load, in place of that of a state at rest [B/L^2].
+# Scale of the force for states at rest, which have no onset: that of the tip load [B/L^2].
 _ONSET_AT_REST = 38.0
 
 
@@ -62,7 +62,7 @@ class Missed(NotFound):
     Attributes
     ----------
     searched_to : float or None
-        Force at which the search ended [B/L^2]; None where it could not have gone on.
+        Force at which the search ended [B/L^2]; None if the branch could not be followed farther.
     """
 
     searched_to: float | None = None
@@ -75,7 +75,7 @@ def search(
     up_to: float | None,
     progress: Progress | None,
 ) -> Bifurcation[Any] | NotFound:
-    """Return the first bifurcation that is a threshold; next to a known one, if it is there.
+    """Return the bifurcation of a threshold: next to a known one, else the first on the branch.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def search(
     wanted : Wanted
         The threshold: kind of state and change of its stability.
     near : Bifurcation or None
-        The same of a similar model.
+        The same bifurcation of a similar model.
     up_to : float or None
         The largest force of interest [B/L^2].
     progress : callable or None
@@ -99,11 +99,11 @@ def search(
     InputError
         The model cannot have the states of the threshold.
     """
-    check(model, wanted)
+    _require_states(model, wanted)
     if near is not None:
-        again = refind_bifurcation(near, model, FORCE, wanted.is_it, progress)
-        if not isinstance(again, NotFound) and (up_to is None or again.value <= up_to):
-            return again
+        refound = refind_bifurcation(near, model, FORCE, wanted.is_it, progress)
+        if not isinstance(refound, NotFound) and (up_to is None or refound.value <= up_to):
+            return refound
     ends = _ends(model, wanted.kind, up_to)
     if isinstance(ends, NotFound):
         return ends
@@ -119,7 +119,7 @@ def search(
     return searched.missed(wanted.does)
 
 
-def check(model: Model, wanted: Wanted) -> None:
+def _require_states(model: Model, wanted: Wanted) -> None:
     """Refuse a model that cannot have the states of a threshold."""
     if wanted.kind != "equilibrium":
         require_turning(model, wanted.kind)
@@ -157,8 +157,8 @@ def _pieces(
             )
             return
     state: Solved | NotFound = kind_by_name(wanted.kind).find(changed(model, FORCE, start))
-    first = (start or _ONSET_AT_REST) * FARTHEST
-    for force in _doubling(start, min(first, end), end):
+    first_end = (start or _ONSET_AT_REST) * FARTHEST
+    for force in _doubling(start, min(first_end, end), end):
         if isinstance(state, NotFound):
             yield state
             return
@@ -180,7 +180,7 @@ def _doubling(start: float, first: float, end: float) -> Iterator[float]:
 
 @dataclass(frozen=True)
 class _Searched:
-    """Stability along the part of a branch that was searched without the threshold on it.
+    """Stability along the part of a branch that was searched and does not hold the threshold.
 
     Attributes
     ----------
@@ -223,7 +223,7 @@ class _Searched:
         )
 
     def missed(self, does: str) -> Missed:
-        """Return the failure, with a sentence for the stability that there is instead."""
+        """Return the failure, with the stability of the branch in a sentence."""
         finding = self._sentence(does)
         if self.complete:
             return Missed(SearchStatus.ABSENT, finding, searched_to=self.reached)

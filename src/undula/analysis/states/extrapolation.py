@@ -2,8 +2,8 @@
 
 A quantity of a body that links stand for depends on their number N as q + c / N^2 + d / N^4 + ...
 Romberg's scheme removes the first two terms with N, 2 N and 4 N links, and the third with 8 N where
-that is needed. The stated error is the change by the last step, which is the error of the value
-before it and so on the safe side.
+that is needed. The error is estimated by the change in the last step of the scheme, which is about
+the error of the value before that step and thus an upper estimate.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,7 +22,8 @@ REFINEMENTS = (1, 2, 4, 8)
 # Largest relative error of a quantity at which refinement ends, and the fewest refinements.
 _TOLERANCE, _FEWEST = 5e-6, 3
 
-# Fewest links whose error is estimated from fewer links; with less than that it takes more.
+# Number of links from which on the error is estimated by a solution on fewer links; below it, by
+# one on more links.
 _MANY_LINKS = 36
 
 S = TypeVar("S")
@@ -48,7 +49,7 @@ def error_of_links(
     value : float
         The quantity on the links of the model.
     again : callable
-        From the same body of other links to the quantity, None if it is not found.
+        Returns the quantity for the same body on other links; None if it is not found.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from undula.analysis.states.state import State
 from undula.arrays import Array, ComplexArray, Shapes
 from undula.models.model import Model
 
-# Fewer cycles in a period than this [1] make a line of the mean of a motion that does not turn.
+# Largest number of cycles in a period at which a spectral line counts as the mean of the motion.
 _AT_REST = 1e-6
 
 
@@ -111,6 +111,7 @@ class Periodic(State):
 
     def _turned_back(self, across: ComplexArray) -> ComplexArray:
         """Return x + i y (m,) in a frame that turns with the motion, in which it is periodic."""
+        # Samples begin one interval after the start and include the end of the period.
         periods = np.arange(1, across.size + 1) / across.size
         return np.asarray(across * np.exp(-1j * self.angle * periods), dtype=np.complex128)
 
