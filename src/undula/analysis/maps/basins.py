@@ -68,9 +68,9 @@ def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
     Parameters
     ----------
     store : xarray.Dataset
-        A stored sweep.
+        A stored sweep with replicates.
     confidence : float
-        Of the intervals, between 0 and 1.
+        Confidence of the intervals, between 0 and 1.
 
     Returns
     -------
@@ -86,9 +86,16 @@ def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
 
     Examples
     --------
+    A table of four replicates under one force stands for a sweep of `load_sweep`:
+
     >>> import undula as un
-    >>> shares = un.basins(un.load_sweep("basins"))  # doctest: +SKIP
-    >>> shares["fraction"].sel(verdict="spinning")  # doctest: +SKIP
+    >>> import xarray as xr
+    >>> axes = ("load.force", "try")
+    >>> words = [["spinning", "spinning", "planar flapping", "spinning"]]
+    >>> variables = {"status": (axes, [[1, 1, 1, 1]]), "verdict": (axes, words)}
+    >>> shares = un.basins(xr.Dataset(variables, {"load.force": [75.0]}))
+    >>> shares["fraction"].sel(verdict="spinning").values
+    array([0.75])
     """
     verdicts = verdicts_of(store)
     names, counts = np.unique(verdicts.values[verdicts.values != ""], return_counts=True)

@@ -78,13 +78,18 @@ def contradictions(
 
     Examples
     --------
+    A table of two forces stands for a sweep of `load_sweep`:
+
     >>> import undula as un
-    >>> sweep = un.load_sweep("point-loads")  # doctest: +SKIP
-    >>> model = un.Filament(20, un.PointLoad(75.0, position=0.5))
-    >>> boundaries = un.stability_boundaries(
-    ...     model, "load.position", sweep["load.position"].values, 300.0
-    ... )  # doctest: +SKIP
-    >>> [point.sentence for point in un.contradictions(sweep, boundaries)]  # doctest: +SKIP
+    >>> import xarray as xr
+    >>> axes = ("load.force", "try")
+    >>> words = [["straight"], ["spinning"]]
+    >>> variables = {"status": (axes, [[1], [1]]), "verdict": (axes, words)}
+    >>> store = xr.Dataset(variables, {"load.force": [10.0, 20.0]})
+    >>> model = un.Filament(8, un.TipLoad(75.0))
+    >>> boundaries = un.stability_boundaries(model, None, (), 30.0)
+    >>> [point.sentence for point in un.contradictions(store, boundaries)]
+    ['spinning at load.force = 20: spinning begins at force 35.193']
     """
     _check(store, boundaries)
     result = []

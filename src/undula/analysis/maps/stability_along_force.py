@@ -75,7 +75,7 @@ def stability_along_force(
     model : Model
         Its own force does not matter.
     forces : sequence of float
-        In the model's unit of force and in any order, none below 0.
+        Total follower forces in the model's unit, at least 0, in any order.
     progress : callable, optional
         Called with each force that was reached.
 
@@ -84,6 +84,11 @@ def stability_along_force(
     list of dict
         For each force the record of `solved_record`. More states may be found: a branch that folds
         back below the onset is followed around its fold.
+
+    Raises
+    ------
+    InputError
+        A force is out of range.
 
     Examples
     --------

@@ -53,7 +53,7 @@ class StabilityBoundaries:
     values : tuple of float
         Its values, in its unit; a single NaN for a single model.
     up_to : float
-        The largest force of interest [B/L^2].
+        The largest force of interest, in the model's unit.
     columns : tuple of mapping of str to StabilityIntervals
         For each value the intervals of "straight", "spinning" and "flapping".
     """
@@ -132,7 +132,7 @@ def stability_boundaries(
     values : sequence of float
         Values of the parameter, in its unit.
     up_to : float
-        The largest force of interest [B/L^2], above 0.
+        The largest force of interest, in the model's unit, above 0.
     progress : callable, optional
         Called with the number of values done and of all.
 

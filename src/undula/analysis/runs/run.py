@@ -44,6 +44,7 @@ class Run:
     ----------
     model : Model
     schedule : Schedule
+        Times, samples and tolerances as requested.
     ending : Ending
         Reason for the end of the run.
     cause : str

@@ -61,6 +61,13 @@ def criticality(model: Model) -> tuple[Criticality, ...] | NotFound:
     Returns
     -------
     tuple of Criticality or NotFound
+        Flapping first. `NotFound` if the straight state is stable at all forces, or Newton's method
+        finds no state next to the Hopf point.
+
+    Raises
+    ------
+    InputError
+        The model has natural curvature, so that it has no straight state.
 
     Examples
     --------
@@ -91,6 +98,7 @@ def criticality_of(model: Model, kind: str) -> Criticality | NotFound:
     Returns
     -------
     Criticality or NotFound
+        As in `criticality`.
     """
     start = (spinning_start if kind == "spinning" else flapping_start)(model)
     if start is None:

@@ -89,13 +89,14 @@ def follow_from_bifurcation(
 
     Examples
     --------
-    Following takes a minute:
+    Following takes ten seconds:
 
     >>> import undula as un
-    >>> branch = un.follow_from_onset(
-    ...     un.Filament(12, un.TipLoad(40.0)), "flapping", 80.0
-    ... )  # doctest: +SKIP
-    >>> un.follow_from_bifurcation(branch.bifurcations[0], 60.0)  # doctest: +SKIP
+    >>> beat = un.find_flapping(un.Filament(6, un.TipLoad(114.0)))  # doctest: +SKIP
+    >>> planar = un.follow(beat, "load.force", 115.0)  # doctest: +SKIP
+    >>> branch = un.follow_from_bifurcation(planar.bifurcations[0], 114.5)  # doctest: +SKIP
+    >>> branch.complete, branch.states[-1].stable  # doctest: +SKIP
+    (True, False)
     """
     state = bifurcation.state
     if not isinstance(state, Flapping) or bifurcation.kind != "symmetry breaking":

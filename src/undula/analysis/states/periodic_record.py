@@ -37,6 +37,18 @@ class Periodic(State):
         Errors of the multipliers of a shift in time and of a turn about the axis.
     time_error : float
         Estimated error of the frequency by the steps in time [cycles per T].
+    model, exponents, error
+        As in `undula.analysis.states.state.State`.
+
+    Examples
+    --------
+    A planar beat recurs after half its period, turned by pi:
+
+    >>> import undula as un
+    >>> model = un.Filament(4, un.TipLoad(75.0))
+    >>> beat = un.find_periodic(un.integrate(model, un.planar(model, 0.1), until=0.2))
+    >>> beat.nodes.shape, round(abs(beat.angle), 6), round(abs(beat.turns), 6)
+    ((32, 5, 3), 3.141593, 0.5)
     """
 
     kind: ClassVar[str] = "periodic"

@@ -25,9 +25,18 @@ class Spinning(FixedShape):
     residual : float
         Largest entry of the residual, relative to the forces of the equations.
     exponents : ndarray of shape (k,)
-        Of disturbances in the frame that turns with the shape.
+        Exponents [1/T] of disturbances in the frame that turns with the shape.
     trivial : complex
         The exponent of a turn about the axis: the one next to 0.
+    model, unknowns, error
+        As in `undula.analysis.states.state.State`.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(75.0)))
+    >>> state.nodes.shape, bool(abs(state.trivial) < 1e-6 * abs(state.rate))
+    ((9, 3), True)
     """
 
     kind: ClassVar[str] = "spinning"
@@ -83,6 +92,16 @@ class Equilibrium(FixedShape):
         Largest force that is not in balance [B/L^2].
     error : float or None
         None: the frequency is 0 exactly.
+    model, unknowns, exponents
+        As in `undula.analysis.states.state.State`.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> curved = un.Filament(8, un.TipLoad(10.0), natural_curvature=(1.0, 0.0))
+    >>> state = un.find_equilibrium(curved)
+    >>> state.nodes.shape, round(state.tip_radius.mean, 3)
+    ((9, 3), 0.206)
     """
 
     kind: ClassVar[str] = "equilibrium"
@@ -145,6 +164,15 @@ class Flapping(State):
         |multiplier - 1| of a shift in time, and of a turn about the axis unless confined.
     time_error : float
         Estimated error of the frequency by the steps in time [beats per T].
+    period, error
+        As in `undula.analysis.states.state.State`.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> beat = un.find_flapping(un.Filament(4, un.TipLoad(75.0), confined=True))
+    >>> beat.nodes.shape, beat.leading_rate_out_of_plane
+    ((64, 5, 3), None)
     """
 
     kind: ClassVar[str] = "flapping"
