@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from answer_keys import unknown_keys
-from commands import Ask, Asked
+from commands import Ask, Asked, unknown_keys
 
 # No screen is needed, and none is looked for.
 os.environ.setdefault("MPLBACKEND", "Agg")

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cases import mostly_slow
 from commands import PATIENCE, UNDULA, Ask, answer, ended, in_process, refused, started
-from pace import mostly_slow
 from undula.analysis.run_settings import Schedule
 from undula.app.cli import main
 from undula.storage.run_file import load_checkpoint, load_result

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 import undula as un
+from cases import mostly_slow
 from commands import Ask, Asked, answer
-from pace import mostly_slow
 from undula.analysis.solvers.quantities import quantities_of
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning

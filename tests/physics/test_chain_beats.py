@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import undula as un
-from pace import mostly_slow
+from cases import mostly_slow
 from planar_chain import beat, rate_out_of_plane
 from undula.analysis.states.branch import Branch
 from undula.analysis.states.not_found import NotFound

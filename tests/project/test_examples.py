@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pace import mostly_slow
+from cases import mostly_slow
 from pages import DOCS, ROOT
 
 ALL = sorted(path for path in (ROOT / "examples").iterdir() if path.suffix in (".py", ".toml"))

@@ -12,7 +12,7 @@ import pytest
 import typer
 
 import undula
-from pace import mostly_slow
+from cases import mostly_slow
 from pages import DOCS, PAGES, blocks, called, name, named, typed
 from stand_ins import BegunError, examples_in, results_in, stop_where_work_begins
 from undula.app.cli import app, main

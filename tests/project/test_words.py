@@ -166,10 +166,6 @@ def test_every_exception_is_a_word_that_claims_use() -> None:
         assert any(f"{word}(" in text for text in claims), f"{name}: {word}"
 
 
-def test_every_unfinished_place_exists() -> None:
-    assert {name for name in UNSOURCES if not (SOURCE / name).exists()} == set()
-
-
 @pytest.mark.parametrize(
     "text",
     [

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from answer_keys import unknown_keys
+from commands import unknown_keys
 from undula.schema.answer_keys import ANSWERS, PARAMETER, Named
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -1,6 +1,7 @@
 """The axes along which claims on models are tested, and random states that belong to them."""
 
-from typing import Literal, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
@@ -88,3 +89,13 @@ def random_state(
             stretch += strain * random.uniform(-1.0, 1.0)
         links.append(stretch * tangent / np.linalg.norm(tangent) / model.segments)
     return np.cumsum(links, axis=0).ravel()
+
+
+def mostly_slow(values: Iterable[Any], is_fast: Callable[[Any], bool]) -> list[Any]:
+    """Return the values of a parameter, or of several as tuples, each slow unless it is fast."""
+    return [value if is_fast(value) else _slow(value) for value in values]
+
+
+def _slow(value: Any) -> Any:
+    values = value if isinstance(value, tuple) else (value,)
+    return pytest.param(*values, marks=pytest.mark.slow)

@@ -19,7 +19,7 @@ import pytest
 import xarray as xr
 from distributed import Security, get_worker, rpc
 
-from pace import mostly_slow
+from cases import mostly_slow
 from small_sweeps import AXES, QUICK, differing, done, sweep_of
 from undula.app.cli import main
 from undula.errors import InputError

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import undula as un
-from pace import mostly_slow
+from cases import mostly_slow
 from undula.analysis.regimes.lyapunov import lyapunov
 from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.checkpoint import checkpoint, resume
