@@ -11,7 +11,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from refusal import complaint
-from undula.analysis.linear.results import CriticalCurve, Crossing, GrowthCurve, Onset, Spectrum
+from undula.analysis.linear.curves import CriticalCurve, GrowthCurve
+from undula.analysis.linear.results import Crossing, Onset, Spectrum
 from undula.views import growth_figure, stability_portrait, threshold_figure
 from undula.views.linear.mode_shapes import leading_shapes
 

@@ -1,6 +1,7 @@
-"""Parameters of a model by name, such as "load.slope" or "model.drag_ratio"."""
+"""Parameters of a model by name, such as "load.slope", "model.drag_ratio" or "load.density[2]"."""
 
 import dataclasses
+import re
 from typing import Any
 
 from undula.errors import InputError, is_number
@@ -13,6 +14,13 @@ _COMPONENTS = {
     f"model.natural_curvature.{name}": ("natural_curvature", index)
     for index, name in enumerate(("k1", "k2"))
 }
+#: Tables whose values are parameters, by the prefix of their names: field and field of the table.
+_TABLES = {
+    "load.density": ("density", None),
+    "model.natural_curvature.k1": ("natural_curvature", "k1"),
+    "model.natural_curvature.k2": ("natural_curvature", "k2"),
+}
+_ENTRY = re.compile(r"(?P<table>[a-z_0-9.]+)\[(?P<index>\d+)\]")
 
 
 def changed(model: Model, parameter: str, value: float) -> Model:
@@ -23,7 +31,8 @@ def changed(model: Model, parameter: str, value: float) -> Model:
     model : Model
         Model of the filament or chain.
     parameter : str
-        "load." and a number of the load, or "model." and a number of the model.
+        "load." and a number of the load, or "model." and a number of the model; a value of a table
+        has its place, counted from 0, in brackets.
     value : float
         New value, in the unit of the parameter; a whole number where the parameter is one.
 
@@ -40,6 +49,8 @@ def changed(model: Model, parameter: str, value: float) -> Model:
     owner_name, _, name = parameter.partition(".")
     if parameter in _COMPONENTS and parameter in _numbers(model):
         return _with_component(model, *_COMPONENTS[parameter], value)
+    if parameter in table_entries(model):
+        return _with_entry(model, parameter, value)
     owner: Any = {"load": model.load, "model": model}.get(owner_name)
     field = getattr(owner, "__dataclass_fields__", {}).get(name)
     if field is None or not field.init or not is_number(getattr(owner, name)):
@@ -72,7 +83,10 @@ def value_of(model: Model, parameter: str) -> float:
     InputError
         The model has no such parameter, or it is a whole number.
     """
-    names = [name for name, kind in _numbers(model).items() if kind not in (int, "int")]
+    entries = table_entries(model)
+    if parameter in entries:
+        return entries[parameter]
+    names = continuous_parameters(model)
     if parameter not in names:
         raise InputError(f"nothing can be followed along {parameter}; take {' or '.join(names)}")
     if parameter in _COMPONENTS:
@@ -80,6 +94,20 @@ def value_of(model: Model, parameter: str) -> float:
         return float(getattr(model, name)[index])
     owner_name, name = parameter.split(".")
     return float(getattr(model.load if owner_name == "load" else model, name))
+
+
+def continuous_parameters(model: Model) -> list[str]:
+    """Return the names of the numbers of a model that are not whole, without values of tables."""
+    return [name for name, kind in _numbers(model).items() if kind not in (int, "int")]
+
+
+def table_entries(model: Model) -> dict[str, float]:
+    """Return the values of the tables of a model by their names, such as "load.density[2]"."""
+    entries: dict[str, float] = {}
+    for prefix in _TABLES:
+        values = _table_values(model, prefix)
+        entries |= {f"{prefix}[{place}]": value for place, value in enumerate(values)}
+    return entries
 
 
 def neighbours(model: Model, parameter: str, value: float) -> tuple[Model, Model, float]:
@@ -126,6 +154,27 @@ def _numbers(model: Any) -> dict[str, Any]:
         if isinstance(getattr(model, name, None), tuple)
     }
     return numbers | pairs
+
+
+def _table_values(model: Any, prefix: str) -> tuple[float, ...]:
+    """Return the values of a table, none if the model does not have it."""
+    field, column = _TABLES[prefix]
+    table = getattr(model.load if prefix.startswith("load.") else model, field, None)
+    values = table if column is None else getattr(table, column, None)
+    return values if isinstance(values, tuple) else ()
+
+
+def _with_entry(model: Any, parameter: str, value: float) -> Model:
+    match = _ENTRY.fullmatch(parameter)
+    assert match is not None  # as the names of entries have an index
+    prefix, place = match["table"], int(match["index"])
+    field, column = _TABLES[prefix]
+    values = list(_table_values(model, prefix))
+    values[place] = float(value)
+    if column is None:
+        return model.with_(**{field: tuple(values)})  # type: ignore[no-any-return]
+    table = dataclasses.replace(getattr(model, field), **{column: tuple(values)})
+    return model.with_(**{field: table})  # type: ignore[no-any-return]
 
 
 def _with_component(model: Any, name: str, index: int, value: float) -> Model:

@@ -5,17 +5,20 @@ A small transverse displacement is a sum of modes y(s) exp(sigma t). `rate` is R
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 
+from undula.analysis.record import Fact, Record
 from undula.arrays import Array, ComplexArray, Points
 
 Method = Literal["spectral", "modes", "discrete"]
 
 
-@dataclass(frozen=True)
-class Spectrum:
+@dataclass(frozen=True, repr=False)
+class Spectrum(Record):
     """Leading eigenvalues of the straight state under one force.
 
     Attributes
@@ -45,6 +48,8 @@ class Spectrum:
     method: Method
     paper_time: bool = False
 
+    _figure: ClassVar[str] = "undula.views.records.linear:spectrum"
+
     @property
     def rates(self) -> Array:
         """Growth rates [1/T], of shape (k,)."""
@@ -55,14 +60,40 @@ class Spectrum:
         """Frequencies [cycles/T], of shape (k,)."""
         return np.asarray(np.abs(self.values.imag) / (2.0 * np.pi))
 
+    def facts(self) -> dict[str, Fact]:
+        """Return force, and rate and frequency of the leading eigenvalue, by name."""
+        return {
+            "force": Fact(self.force, "B/L^2"),
+            "leading_rate": Fact(float(self.rates[0]), "1/T", float(self.errors[0])),
+            "frequency": Fact(float(self.frequencies[0]), "cycles per T"),
+            "method": Fact(self.method),
+        }
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a row for each eigenvalue: rate, frequency and error."""
+        columns = {"rate": self.rates, "frequency": self.frequencies, "error": self.errors}
+        return pd.DataFrame(columns)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return rates, frequencies, errors and modes as a dataset."""
+        return xr.Dataset(
+            {
+                "rate": ("mode", self.rates, {"units": "1/T"}),
+                "frequency": ("mode", self.frequencies, {"units": "cycles per T"}),
+                "error": ("mode", self.errors, {"units": "1/T"}),
+                "shape": (("mode", "s"), self.modes.real, {"long_name": "real part of the mode"}),
+            },
+            coords={"s": ("s", self.s, {"units": "L"})},
+        )
+
     def __str__(self) -> str:
         """Return the leading eigenvalue in one line."""
         leading = f"{self.rates[0]:.6g} /T at {self.frequencies[0]:.6g} cycles per T"
         return f"force {self.force:.6g}: leading rate {leading} (to {self.errors[0]:.1g})"
 
 
-@dataclass(frozen=True)
-class Crossing:
+@dataclass(frozen=True, repr=False)
+class Crossing(Record):
     """A force at which a complex pair crosses the imaginary axis: a Hopf point.
 
     Attributes
@@ -86,6 +117,14 @@ class Crossing:
     growth_slope: float
     round_off: float = 0.0
 
+    def facts(self) -> dict[str, Fact]:
+        """Return force and frequency by name."""
+        return {
+            "force": Fact(self.force, "B/L^2", self.error),
+            "frequency": Fact(self.frequency, "cycles per T", self.frequency_error),
+            "growth_slope": Fact(self.growth_slope, "1/T per B/L^2"),
+        }
+
     def __str__(self) -> str:
         """Return force and frequency with their errors in one line."""
         return (
@@ -94,8 +133,8 @@ class Crossing:
         )
 
 
-@dataclass(frozen=True)
-class Onset:
+@dataclass(frozen=True, repr=False)
+class Onset(Record):
     """Loss of stability of the straight state as the force grows from 0.
 
     Attributes
@@ -138,96 +177,21 @@ class Onset:
         """The estimated error of the Hopf force [B/L^2], None without one."""
         return self.hopf.error if self.hopf else None
 
+    def facts(self) -> dict[str, Fact]:
+        """Return the forces from which the straight state rings and oscillates, by name."""
+        return {
+            "force": Fact(self.force, "B/L^2", self.error),
+            "frequency": Fact(
+                self.frequency, "cycles per T", self.hopf.frequency_error if self.hopf else None
+            ),
+            "oscillatory_force": Fact(self.oscillatory_force, "B/L^2", self.oscillatory_error),
+            "searched_to": Fact(self.searched_to, "B/L^2"),
+            "method": Fact(self.method),
+        }
+
     def __str__(self) -> str:
         """Return the threshold in one line."""
         if self.hopf is None:
             return f"straight and stable at every force up to {self.searched_to:.4g}"
         ringing = self.oscillatory_force
         return str(self.hopf) + (f"; rings from {ringing:.12g} on" if ringing else "")
-
-
-@dataclass(frozen=True)
-class GrowthCurve:
-    """The leading eigenvalue against the force, and against a second parameter if one was given.
-
-    Attributes
-    ----------
-    forces : ndarray of shape (m,)
-        Total forces [B/L^2].
-    rates, frequencies, errors : ndarray of shape (m,), or (k, m) with a parameter
-        Rate [1/T], frequency [cycles/T] and estimated error of the eigenvalue [1/T].
-    method : {"spectral", "modes", "discrete"}
-        Discretisation.
-    parameter : str or None
-        Name of the second parameter, such as "load.slope".
-    values : ndarray of shape (k,) or None
-        Values of the second parameter, in its unit.
-    paper_time : bool
-        True if rates and frequencies are smaller by the drag ratio, as in the printed equation.
-    """
-
-    forces: Array
-    rates: Array
-    frequencies: Array
-    errors: Array
-    method: Method
-    parameter: str | None = None
-    values: Array | None = None
-    paper_time: bool = False
-
-
-@dataclass(frozen=True)
-class CriticalCurve:
-    """Thresholds against a parameter; NaN where the straight state stays stable.
-
-    Attributes
-    ----------
-    parameter : str
-        Name of the parameter, such as "load.slope".
-    values : ndarray of shape (k,)
-        Values of the parameter, in its unit.
-    onsets : tuple of Onset
-        The onset at each value.
-    """
-
-    parameter: str
-    values: Array
-    onsets: tuple[Onset, ...]
-
-    @property
-    def forces(self) -> Array:
-        """Hopf forces [B/L^2], of shape (k,)."""
-        return self._of_hopf("force")
-
-    @property
-    def frequencies(self) -> Array:
-        """Frequencies at the Hopf forces [cycles/T], of shape (k,)."""
-        return self._of_hopf("frequency")
-
-    @property
-    def errors(self) -> Array:
-        """Estimated errors of the Hopf forces [B/L^2], of shape (k,)."""
-        return self._of_hopf("error")
-
-    @property
-    def growth_slopes(self) -> Array:
-        """Change of the growth rate with the force [1/T per B/L^2], of shape (k,)."""
-        return self._of_hopf("growth_slope")
-
-    @property
-    def oscillatory_forces(self) -> Array:
-        """Least forces at which the leading eigenvalue is complex [B/L^2], of shape (k,)."""
-        return np.array(
-            [
-                np.nan if onset.oscillatory_force is None else onset.oscillatory_force
-                for onset in self.onsets
-            ]
-        )
-
-    @property
-    def method(self) -> Method:
-        """Discretisation by which the thresholds were computed."""
-        return self.onsets[0].method
-
-    def _of_hopf(self, name: str) -> Array:
-        return np.array([getattr(onset.hopf, name, np.nan) for onset in self.onsets])

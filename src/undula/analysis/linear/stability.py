@@ -9,15 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from undula.analysis.linear.checked_values import checked_forces, checked_values, models_along
+from undula.analysis.linear.curves import CriticalCurve, GrowthCurve
 from undula.analysis.linear.onset import find_onset
 from undula.analysis.linear.pencils import linearised
-from undula.analysis.linear.results import (
-    CriticalCurve,
-    Crossing,
-    GrowthCurve,
-    Method,
-    Onset,
-)
+from undula.analysis.linear.results import Crossing, Method, Onset
 from undula.analysis.linear.spectrum import leading_eigenvalues, slowness_factor
 from undula.arrays import Array
 from undula.errors import InputError

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from undula.analysis.record import Fact, Record
 from undula.analysis.run_settings import Schedule
 from undula.arrays import Array, State
 from undula.errors import InputError, is_number
@@ -29,8 +31,8 @@ _MIN_SPEED = 1e-9
 _FIRST_DISPLACEMENT = 1e-6
 
 
-@dataclass(frozen=True)
-class Lyapunov:
+@dataclass(frozen=True, repr=False)
+class Lyapunov(Record):
     """The leading Lyapunov exponents of a motion.
 
     Attributes
@@ -74,6 +76,27 @@ class Lyapunov:
     def beyond_symmetry_error(self) -> float:
         """Error of that exponent [1/T]."""
         return float(self.errors[self._others[0]])
+
+    def facts(self) -> dict[str, Fact]:
+        """Return the largest exponents and their duration by name."""
+        return {
+            "largest": Fact(self.value, "1/T", self.error),
+            "beyond_symmetry": Fact(self.beyond_symmetry, "1/T", self.beyond_symmetry_error),
+            "symmetries": Fact(self.symmetries),
+            "duration": Fact(self.duration, "T"),
+        }
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a row for each exponent, with its error."""
+        return pd.DataFrame({"exponent": self.exponents, "error": self.errors})
+
+    def __str__(self) -> str:
+        """Return the largest exponents with their errors in one line."""
+        return (
+            f"largest Lyapunov exponent {self.value:.4g} ± {self.error:.1g} /T, beyond the"
+            f" symmetries {self.beyond_symmetry:.4g} ± {self.beyond_symmetry_error:.1g} /T, over"
+            f" {self.duration:.4g} T"
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Return all fields in plain JSON types."""

@@ -4,9 +4,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import Any, Self
+from pathlib import Path
+from typing import Any, ClassVar, Self
 
 import numpy as np
+import xarray as xr
 
 from undula.analysis.observables.frequency import (
     Frequency,
@@ -15,10 +17,10 @@ from undula.analysis.observables.frequency import (
     shape_frequency,
     shape_swings,
 )
-from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.precession import Precession, precession
-from undula.analysis.observables.shapes import azimuth, envelope, tip_height, tip_radius
+from undula.analysis.observables.shapes import azimuth
 from undula.analysis.observables.trajectory import Motion
+from undula.analysis.record import Fact, Record, function_by_name
 from undula.analysis.regimes.lyapunov import Lyapunov
 from undula.analysis.regimes.verdict import STRAIGHT, Verdict
 from undula.analysis.run_settings import Ending, Schedule
@@ -28,6 +30,7 @@ from undula.analysis.runs.classify_run import Classified, Exponents, Watch, fail
 from undula.analysis.runs.fine_tail import CloseUp, close_up
 from undula.analysis.runs.finite_separation import Separation
 from undula.analysis.runs.reached_state import ReachedState
+from undula.analysis.runs.run_facts import extents_of, facts_of, line_of
 from undula.analysis.runs.settled_motion import Settled
 from undula.analysis.runs.simulation import Simulation
 from undula.analysis.runs.stop_rule import Observation
@@ -36,8 +39,8 @@ from undula.arrays import Array, Nodes
 from undula.models.model import Model
 
 
-@dataclass(frozen=True)
-class Run:
+@dataclass(frozen=True, repr=False)
+class Run(Record):
     """The result of a time integration.
 
     Attributes
@@ -84,6 +87,8 @@ class Run:
     tight_from: float | None
     checkpoint: Mapping[str, Array]
     exponents: Exponents = Exponents.IF_IRREGULAR
+
+    _figure: ClassVar[str] = "undula.views.records.runs:run_figure"
 
     @classmethod
     def of(cls, simulation: Simulation, exponents: Exponents = Exponents.IF_IRREGULAR) -> Self:
@@ -229,16 +234,11 @@ class Run:
 
     def figures(self) -> dict[str, Any]:
         """Return the quantities measured in the window, in plain JSON types."""
-        window = self.window
-        share = self.verdict.evidence.get("planarity")
         return {
             **frequency_fields("frequency", self.frequency),
             **frequency_fields("rotation_frequency", self.rotation_frequency),
             **frequency_fields("shape_frequency", self.shape_frequency),
-            "bending_energy": asdict(envelope(window.energetics.bending_energy)),
-            "tip_radius": asdict(envelope(tip_radius(window.nodes))),
-            "tip_height": asdict(envelope(tip_height(window.nodes))),
-            "planarity": planarity(window.nodes) if share is None else share,
+            **extents_of(self.window, self.verdict.evidence.get("planarity")),
         }
 
     def summary(self) -> dict[str, Any]:
@@ -263,7 +263,9 @@ class Run:
             "without_lyapunov": self.without_lyapunov or None,
             **self.figures(),
             "winding_angle": float(azimuth(self.motion.nodes)[-1]),
-            "precession": self._precession(),
+            "precession": None
+            if self.model.axisymmetric
+            else self.precession and asdict(self.precession),
             "time": float(self.motion.time[-1]),
             "window": [float(window.time[0]), float(window.time[-1])],
             "settled": self.observation.as_dict() if self.observation else None,
@@ -273,28 +275,30 @@ class Run:
             **asdict(self.health),
         }
 
+    def facts(self) -> dict[str, Fact]:
+        """Return verdict, frequency, energy, extents and accuracy by name."""
+        return facts_of(self.summary())
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the run as a dataset over time, node and axis, as `dataset_of` does."""
+        return function_by_name("undula.analysis.runs.dataset:dataset_of")(self)  # type: ignore[no-any-return]
+
+    def save(self, path: Path | str, *, overwrite: bool = False) -> None:
+        """Store the run as `undula run` does; `undula.load` and all commands read it."""
+        store = function_by_name("undula.storage.record_file:save_run")
+        store(Path(path), self, overwrite=overwrite)
+
+    def movie(self, path: Path | str, *, frames: int = 240, fps: int = 30) -> Path:
+        """Make an MP4 movie of the run, as `undula.views.movie` does; return its name."""
+        make = function_by_name("undula.views.run.movie:movie")
+        return Path(make(self.to_xarray(), path, frames=frames, fps=fps))
+
     def _exponents(self) -> dict[str, Any] | None:
         if self.lyapunov is None:
             return None
         parting = self.separation and self.separation.as_dict()
         return {**self.lyapunov.as_dict(), "finite_separation": parting}
 
-    def _precession(self) -> dict[str, float] | None:
-        """Return the precession of a filament without rotational symmetry, None for others."""
-        if self.model.axisymmetric or self.precession is None:
-            return None
-        return asdict(self.precession)
-
     def __str__(self) -> str:
         """Return verdict, frequency and accuracy in one line."""
-        frequency = self.frequency
-        rate = ""
-        if frequency:
-            links = f"{self.model.links} links, "
-            of_links = "" if links_are_body(self.model) else links
-            rate = f" at {frequency.value:.6g} /T ({of_links}to {frequency.error:.1g})"
-        return (
-            f"{self.verdict.name}{rate}, {self.ending.value} at {self.motion.time[-1]:.4g} T"
-            f" (power balance to {self.health.power_balance_error:.1g},"
-            f" length to {self.health.length_error:.1g}, {self.health.steps} steps)"
-        )
+        return line_of(self.summary())

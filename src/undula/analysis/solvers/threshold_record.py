@@ -1,15 +1,23 @@
 """A threshold as a record: a force at which stability changes, or why there is no such force."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from undula.analysis.record import Fact, Record
 from undula.analysis.solvers.threshold_search import Missed
 from undula.analysis.states.branch import Bifurcation
 from undula.analysis.states.not_found import NotFound
+from undula.arrays import Array
+from undula.models.model import Model
 
 
-@dataclass(frozen=True)
-class Threshold:
+@dataclass(frozen=True, repr=False)
+class Threshold(Record):
     """A force at which stability changes.
 
     Attributes
@@ -51,19 +59,124 @@ class Threshold:
     links: tuple[int, ...] = ()
     solver_error: float | None = None
     searched_to: float | None = None
+    model: Model | None = None
+
+    def facts(self) -> dict[str, Fact]:
+        """Return value, frequencies and bifurcation by name."""
+        unit = "" if self.model is None else self.model.units.force
+        return {
+            "threshold": Fact(self.kind),
+            "value": Fact(self.value, unit, self.error),
+            "solver_error": Fact(self.solver_error, unit),
+            "frequency": Fact(self.frequency, "cycles per T"),
+            "second_frequency": Fact(self.second_frequency, "cycles per T"),
+            "bifurcation": Fact(self.bifurcation or ""),
+            "links": Fact(", ".join(map(str, self.links)) or "continuum"),
+            "reason": Fact(self.reason or ""),
+        }
+
+    def __bool__(self) -> bool:
+        """Return True if the threshold exists."""
+        return self.value is not None
 
     def __str__(self) -> str:
         """Return the threshold in one line."""
         if self.value is None:
             farther = "" if self.searched_to is None else "; a larger up_to looks farther"
             return f"no {self.kind}: {self.reason}{farther}"
-        error = "" if self.error is None else f" +- {self.error:.1g}"
+        error = "" if self.error is None else f" ± {self.error:.1g}"
         links = ""
         if len(self.links) == 1 and self.error != self.solver_error:
             links = f" ({self.links[0]} links, solved to {self.solver_error:.1g})"
         return (
             f"{self.kind} at force {self.value:.10g}{error}{links}, {self.bifurcation},"
             f" {self.frequency:.8g} cycles per T"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class ThresholdCurve(Record):
+    """A threshold along a parameter; a sequence of thresholds.
+
+    Attributes
+    ----------
+    kind : str
+        Name of the threshold.
+    parameter : str
+        Name of the parameter.
+    parameter_values : ndarray of shape (m,)
+        Its values.
+    thresholds : tuple of Threshold
+        One at each value.
+    """
+
+    kind: str
+    parameter: str
+    parameter_values: Array
+    thresholds: tuple[Threshold, ...]
+
+    _figure: ClassVar[str] = "undula.views.records.linear:curve"
+
+    @property
+    def forces(self) -> Array:
+        """The forces (m,) [B/L^2], NaN where the threshold does not exist."""
+        return np.array([np.nan if t.value is None else t.value for t in self.thresholds])
+
+    @property
+    def errors(self) -> Array:
+        """The errors of the forces (m,) [B/L^2], NaN where unknown."""
+        return np.array([np.nan if t.error is None else t.error for t in self.thresholds])
+
+    @property
+    def frequencies(self) -> Array:
+        """The frequencies there (m,) [cycles per T], NaN where unknown."""
+        return np.array([np.nan if t.frequency is None else t.frequency for t in self.thresholds])
+
+    def __len__(self) -> int:
+        """Return the number of thresholds."""
+        return len(self.thresholds)
+
+    def __getitem__(self, index: int) -> Threshold:
+        """Return a threshold by its number."""
+        return self.thresholds[index]
+
+    def __iter__(self) -> Iterator[Threshold]:
+        """Return the thresholds in their order."""
+        return iter(self.thresholds)
+
+    def facts(self) -> dict[str, Fact]:
+        """Return parameter, and ends of the forces, by name."""
+        known = self.forces[np.isfinite(self.forces)]
+        ends = (float(known.min()), float(known.max())) if known.size else (None, None)
+        error = float(np.nanmax(self.errors)) if np.isfinite(self.errors).any() else None
+        return {
+            "threshold": Fact(self.kind),
+            "parameter": Fact(self.parameter),
+            "values": Fact(len(self)),
+            "least": Fact(ends[0], "B/L^2", error),
+            "largest": Fact(ends[1], "B/L^2", error),
+        }
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return forces, errors and frequencies along the parameter, as a dataset."""
+        columns = {
+            "force": ("value", self.forces, {"units": "B/L^2"}),
+            "error": ("value", self.errors, {"units": "B/L^2"}),
+            "frequency": ("value", self.frequencies, {"units": "cycles per T"}),
+        }
+        along = {"value": ("value", self.parameter_values, {"long_name": self.parameter})}
+        return xr.Dataset(columns, coords=along)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a row for each value of the parameter."""
+        return self.to_xarray().to_dataframe().reset_index(names=self.parameter)
+
+    def __str__(self) -> str:
+        """Return parameter and ends of the forces, with the largest error, in one line."""
+        facts = self.facts()
+        return (
+            f"{self.kind} at {len(self)} values of {self.parameter}: force from"
+            f" {facts['least']} to {facts['largest']}"
         )
 
 

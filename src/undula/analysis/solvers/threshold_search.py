@@ -55,7 +55,7 @@ WANTED: Mapping[str, Wanted] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Missed(NotFound):
     """No threshold up to a force; a farther search might find one.
 

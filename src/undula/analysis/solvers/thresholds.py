@@ -7,6 +7,7 @@
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -82,25 +83,10 @@ def threshold(
     if up_to is not None and not (is_number(up_to) and up_to > 0.0):
         raise InputError(f"up_to = {up_to!r} has to be a force above 0")
     if kind == "onset" and model.axisymmetric:
-        return _onset(model, method, up_to, converged=converged)
-    guess = near.at if near else None
-
-    def solve(finer: Model, coarser: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
-        reached = partial(progress, finer.links) if progress else None
-        return search(finer, WANTED[kind], coarser or guess, up_to, reached)
-
-    if not converged:
-        point = solve(model, None)
-        if isinstance(point, NotFound):
-            return without_value(kind, point)
-        by_links = _error_of_links(point, model)
-        error = None if by_links is None else by_links + point.error
-        return _threshold(kind, point, _numbers(point), error, (model.links,), point.error)
-    limit = converge(model, solve, _numbers)
-    if isinstance(limit, NotFound):
-        return without_value(kind, limit)
-    error = limit.errors["value"] + limit.finest.error
-    return _threshold(kind, limit.finest, limit.values, error, limit.links, limit.finest.error)
+        solved = _onset(model, method, up_to, converged=converged)
+    else:
+        solved = _bifurcation(model, kind, near, up_to, progress, converged=converged)
+    return replace(solved, model=model)
 
 
 def threshold_curve(
@@ -168,6 +154,36 @@ def threshold_curve(
         if stop():
             break
     return tuple(curve)
+
+
+def _bifurcation(
+    model: Model,
+    kind: str,
+    near: Threshold | None,
+    up_to: float | None,
+    progress: Callable[[int, float], None] | None,
+    *,
+    converged: bool,
+) -> Threshold:
+    """Return a threshold that is a bifurcation of a branch of bent states."""
+    guess = near.at if near else None
+
+    def solve(finer: Model, coarser: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
+        reached = partial(progress, finer.links) if progress else None
+        return search(finer, WANTED[kind], coarser or guess, up_to, reached)
+
+    if not converged:
+        point = solve(model, None)
+        if isinstance(point, NotFound):
+            return without_value(kind, point)
+        by_links = _error_of_links(point, model)
+        error = None if by_links is None else by_links + point.error
+        return _threshold(kind, point, _numbers(point), error, (model.links,), point.error)
+    limit = converge(model, solve, _numbers)
+    if isinstance(limit, NotFound):
+        return without_value(kind, limit)
+    error = limit.errors["value"] + limit.finest.error
+    return _threshold(kind, limit.finest, limit.values, error, limit.links, limit.finest.error)
 
 
 def _check_kind(kind: str) -> None:

@@ -1,16 +1,22 @@
 """Records of a branch of states along a parameter and of its bifurcations."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Generic, Literal, TypeVar
+from typing import Any, ClassVar, Generic, Literal, SupportsIndex, TypeVar, overload
 
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from undula.analysis.record import Fact, Record
 from undula.analysis.states.state import State
 from undula.arrays import Array
 
 S = TypeVar("S", bound=State)
 
 
-@dataclass(frozen=True)
-class Bifurcation(Generic[S]):
+@dataclass(frozen=True, repr=False)
+class Bifurcation(Record, Generic[S]):
     """A point of a branch at which a disturbance changes from decay to growth, or back.
 
     Attributes
@@ -39,6 +45,28 @@ class Bifurcation(Generic[S]):
     unstable_after: int
 
     @property
+    def name(self) -> str:
+        """Kind of the state and its change of stability, as "spinning-lost"."""
+        return f"{self.state.kind}-{self.stability}"
+
+    def facts(self) -> dict[str, Fact]:
+        """Return kind, value and frequencies by name."""
+        return {
+            "kind": Fact(self.kind),
+            "stability": Fact(self.stability),
+            "value": Fact(self.value, "", self.error),
+            "frequency": Fact(self.frequency, "cycles per T"),
+            "second_frequency": Fact(self.second_frequency, "cycles per T"),
+        }
+
+    def __str__(self) -> str:
+        """Return kind, value with its error on these links, and change of stability."""
+        return (
+            f"{self.kind} at {self.value:.10g} ± {self.error:.1g} on these links, stability"
+            f" {self.stability}, {self.frequency:.8g} cycles per T"
+        )
+
+    @property
     def loses(self) -> bool:
         """True if the state is stable before and not after."""
         return self.unstable_before == 0 < self.unstable_after
@@ -54,9 +82,35 @@ class Bifurcation(Generic[S]):
         return "lost" if self.loses else "gained" if self.gains else "unchanged"
 
 
-@dataclass(frozen=True)
-class Branch(Generic[S]):
-    """States along a parameter, in the order in which they were followed.
+class Bifurcations(tuple[Bifurcation[S], ...]):
+    """Bifurcations in the order of following, by number or by name.
+
+    A name is the kind of bifurcation, as "torus", or the kind of the state with its change of
+    stability, as "spinning-lost"; it stands for the first of that name.
+    """
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, key: SupportsIndex) -> Bifurcation[S]: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[Bifurcation[S], ...]: ...
+    @overload
+    def __getitem__(self, key: str) -> Bifurcation[S]: ...
+    def __getitem__(self, key: Any) -> Any:
+        """Return a bifurcation by its number or name, or several by a slice."""
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        for bifurcation in self:
+            if key in (bifurcation.kind, bifurcation.name):
+                return bifurcation
+        names = ", ".join(f"{point.name} ({point.kind})" for point in self) or "none"
+        raise KeyError(f"{key}; on this branch there are: {names}")
+
+
+@dataclass(frozen=True, repr=False)
+class Branch(Record, Generic[S]):
+    """States along a parameter, in the order in which they were followed; a sequence of them.
 
     Attributes
     ----------
@@ -66,8 +120,8 @@ class Branch(Generic[S]):
         Its values.
     states : tuple of State
         The states, m of them.
-    bifurcations : tuple of Bifurcation
-        Bifurcations between the states.
+    bifurcations : Bifurcations
+        Bifurcations between the states, by number or name.
     complete : bool
         True if the branch reached the value that was asked for.
     onset : float or None
@@ -78,9 +132,74 @@ class Branch(Generic[S]):
     parameter: str
     values: Array
     states: tuple[S, ...]
-    bifurcations: tuple[Bifurcation[S], ...]
+    bifurcations: "Bifurcations[S]"
     complete: bool
     onset: float | None = None
+
+    _figure: ClassVar[str] = "undula.views.records.states:branch_figure"
+
+    def __post_init__(self) -> None:
+        """Make the bifurcations known by their names."""
+        object.__setattr__(self, "bifurcations", Bifurcations(self.bifurcations))
+
+    def __len__(self) -> int:
+        """Return the number of states."""
+        return len(self.states)
+
+    def __getitem__(self, index: int) -> S:
+        """Return a state by its number."""
+        return self.states[index]
+
+    def __iter__(self) -> Iterator[S]:
+        """Return the states in their order."""
+        return iter(self.states)
+
+    def facts(self) -> dict[str, Fact]:
+        """Return ends, number of states and bifurcations by name."""
+        return {
+            "kind": Fact(self.states[0].kind),
+            "parameter": Fact(self.parameter),
+            "from": Fact(float(self.values[0])),
+            "to": Fact(float(self.values[-1])),
+            "states": Fact(len(self)),
+            "complete": Fact(self.complete),
+            **{
+                f"{point.name} ({point.kind})": Fact(point.value, "", point.error)
+                for point in self.bifurcations
+            },
+        }
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a row for each state: the parameter and all numbers of the state."""
+        rows = [{name: fact.value for name, fact in state.facts().items()} for state in self]
+        table = pd.DataFrame(rows)
+        if self.parameter not in table:
+            table.insert(0, self.parameter, self.values)
+        return table
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the numbers of all states along the parameter, as a dataset."""
+        units = {name: fact.unit for name, fact in self.states[0].facts().items()}
+        table = self.to_dataframe().drop(columns=self.parameter)
+        columns = {
+            str(name): ("point", np.asarray(column), {"units": units.get(str(name), "")})
+            for name, column in table.items()
+        }
+        along = {"value": ("point", self.values, {"long_name": self.parameter})}
+        return xr.Dataset(columns, coords=along)
+
+    def __str__(self) -> str:
+        """Return ends and bifurcations in one line."""
+        ends = f"{self.values[0]:.6g} to {self.values[-1]:.6g}"
+        stop = "" if self.complete else ", stopped early"
+        points = [f"{p.kind} at {p.value:.8g} ± {p.error:.1g}" for p in self.bifurcations[:2]]
+        more = len(self.bifurcations) - 2
+        points += [f"{more} more"] if more > 0 else []
+        found = "; ".join(points) if points else "no bifurcation"
+        return (
+            f"{self.states[0].kind} along {self.parameter} from {ends}, {len(self)} states{stop}:"
+            f" {found}"
+        )
 
     @property
     def criticality(self) -> Literal["subcritical", "supercritical"] | None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from undula.analysis.observables.shapes import Range
-from undula.analysis.states.branch import Bifurcation, Branch
+from undula.analysis.states.branch import Bifurcation, Bifurcations, Branch
 from undula.analysis.states.records import Flapping
 from undula.analysis.states.state import State
 from undula.arrays import ComplexArray
@@ -145,7 +145,7 @@ def read_branch(answer: Mapping[str, Any], parameter: str) -> Branch[Any]:
         parameter,
         np.array([float(point[parameter]) for point in points]),
         tuple(map(_state, points)),
-        tuple(map(_bifurcation, answer.get("bifurcations", ()))),
+        Bifurcations(map(_bifurcation, answer.get("bifurcations", ()))),
         complete=answer["status"] == "done",
         onset=answer.get("onset"),
     )

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
+import pandas as pd
 
+from undula.analysis.record import Fact, Record
 from undula.analysis.states.not_found import NotFound
 from undula.arrays import Array
 from undula.errors import InputError
@@ -67,8 +69,8 @@ def error_of_links(
     return abs(other_value - value) / abs((links / other_links) ** 2 - 1.0)
 
 
-@dataclass(frozen=True)
-class Converged(Generic[S]):
+@dataclass(frozen=True, repr=False)
+class Converged(Record, Generic[S]):
     """Quantities of a state in the limit of many links.
 
     Attributes
@@ -85,6 +87,20 @@ class Converged(Generic[S]):
     links: tuple[int, ...]
     values: Mapping[str, float]
     errors: Mapping[str, float]
+
+    def facts(self) -> dict[str, Fact]:
+        """Return the quantities with their errors by name."""
+        return {name: Fact(value, "", self.errors[name]) for name, value in self.values.items()}
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a row for each quantity: value and error."""
+        return pd.DataFrame({"value": dict(self.values), "error": dict(self.errors)})
+
+    def __str__(self) -> str:
+        """Return the first quantity with its error, and the numbers of links, in one line."""
+        name, value = next(iter(self.values.items()))
+        links = ", ".join(map(str, self.links))
+        return f"{name} {value:.10g} ± {self.errors[name]:.1g} in the limit of {links} links"
 
 
 def converge(

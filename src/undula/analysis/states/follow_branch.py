@@ -7,7 +7,7 @@ from typing import Any, Generic
 
 import numpy as np
 
-from undula.analysis.states.branch import Bifurcation, Branch, S
+from undula.analysis.states.branch import Bifurcation, Bifurcations, Branch, S
 from undula.analysis.states.state import State
 from undula.arrays import Array
 from undula.numerics.continuation.arclength import Point, Steps, trace, with_tangent
@@ -123,7 +123,9 @@ def follow_branch(
             break
         point, problem = reached, problem.with_reference(reached.u)
     complete = values[-1] == to
-    return Branch(family.parameter, np.array(values), tuple(states), tuple(bifurcations), complete)
+    return Branch(
+        family.parameter, np.array(values), tuple(states), Bifurcations(bifurcations), complete
+    )
 
 
 def unstable(state: State) -> int:

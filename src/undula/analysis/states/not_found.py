@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from undula.analysis.record import Fact, Record
+
 
 class SearchStatus(Enum):
     """Reasons for which a search finds nothing; the value is a sentence."""
@@ -17,8 +19,8 @@ class SearchStatus(Enum):
     ABSENT = "all of the range was searched and holds none"
 
 
-@dataclass(frozen=True)
-class NotFound:
+@dataclass(frozen=True, repr=False)
+class NotFound(Record):
     """Outcome of a search that found nothing; false in a condition.
 
     Attributes
@@ -42,6 +44,19 @@ class NotFound:
     def reason(self) -> str:
         """The attempt, how far it led and the next thing to try, in one sentence."""
         return self.finding if self.advice is None else f"{self.finding}; {self.advice}"
+
+    def facts(self) -> dict[str, Fact]:
+        """Return status, finding, advice and residual by name."""
+        return {
+            "status": Fact(self.status.name.lower().replace("_", " ")),
+            "finding": Fact(self.finding),
+            "advice": Fact(self.advice or ""),
+            "residual": Fact(self.residual),
+        }
+
+    def __str__(self) -> str:
+        """Return the reason in one line."""
+        return f"not found: {self.reason}"
 
     def __bool__(self) -> bool:
         """Return False: there is no state."""

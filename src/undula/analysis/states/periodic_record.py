@@ -17,7 +17,7 @@ from undula.models.model import Model
 _AT_REST = 1e-6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Periodic(State):
     """A motion that repeats itself after a time, turned by an angle: x(t + T) = R(angle) x(t).
 

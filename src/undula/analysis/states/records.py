@@ -14,7 +14,7 @@ from undula.arrays import Array, ComplexArray, Shapes
 from undula.models.model import Model
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Spinning(FixedShape):
     """A relative equilibrium: a constant shape that turns about the axis at a constant rate.
 
@@ -82,7 +82,7 @@ class Spinning(FixedShape):
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Equilibrium(FixedShape):
     """A shape at rest.
 
@@ -141,7 +141,7 @@ class Equilibrium(FixedShape):
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Flapping(State):
     """A planar beat: a periodic orbit that is its own mirror image half a period later.
 

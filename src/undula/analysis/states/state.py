@@ -8,17 +8,20 @@ the state was solved for.
 
 import warnings
 from abc import ABC, abstractmethod
+from dataclasses import asdict
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+import xarray as xr
 
 from undula.analysis.observables.shapes import Range, tip_height, tip_radius
+from undula.analysis.record import Fact, Record
 from undula.arrays import Array, ComplexArray, Nodes
 from undula.models.model import Model
 
 
-class State(ABC):
+class State(Record, ABC):
     """A state that was solved for.
 
     Attributes
@@ -45,6 +48,7 @@ class State(ABC):
 
     kind: ClassVar[str]
     steady: ClassVar[bool] = False
+    _figure: ClassVar[str] = "undula.views.records.states:state_figure"
 
     if TYPE_CHECKING:  # a property here would be taken for the default of a kind's own field
 
@@ -121,6 +125,33 @@ class State(ABC):
     def stable(self) -> bool:
         """True if all disturbances decay."""
         return self.leading_rate < 0.0
+
+    def facts(self) -> dict[str, Fact]:
+        """Return kind, stability, frequency, energy and extents by name."""
+        units = self.model.units
+        shared = {
+            "kind": Fact(self.kind),
+            "stable": Fact(self.stable),
+            "force": Fact(self.force, units.force),
+            "links": Fact(self.model.links),
+            "frequency": Fact(self.frequency, "cycles per T", self.error),
+            "leading_rate": Fact(self.leading_rate, "1/T"),
+        }
+        extents = {
+            "bending_energy": (self.bending_energy, units.energy),
+            "tip_radius": (self.tip_radius, "L"),
+            "tip_height": (self.tip_height, "L"),
+        }
+        for name, (own, unit) in extents.items():
+            parts = {"": own.mean} if self.steady else {f"_{k}": v for k, v in asdict(own).items()}
+            shared |= {f"{name}{part}": Fact(value, unit) for part, value in parts.items()}
+        return shared
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the facts, and the nodes of the shape, or over the period, as a dataset."""
+        dims = ("node", "axis") if self.steady else ("instant", "node", "axis")
+        nodes = xr.Variable(dims, self.nodes, {"units": "L"})
+        return super().to_xarray().assign(nodes=nodes).assign_coords(axis=["x", "y", "z"])
 
     @property
     def energy(self) -> Range:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from undula.analysis.linear.results import GrowthCurve
+from undula.analysis.linear.curves import GrowthCurve
 from undula.analysis.linear.straight_branch import StraightBranch
 from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.states.branch import Branch

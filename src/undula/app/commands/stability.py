@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from undula.analysis.linear.results import CriticalCurve, GrowthCurve, Onset, Spectrum
+from undula.analysis.linear.curves import CriticalCurve, GrowthCurve
+from undula.analysis.linear.results import Onset, Spectrum
 from undula.analysis.linear.spectrum import spectrum
 from undula.analysis.linear.stability import critical_curve, growth_curve, onset
 from undula.analysis.parameters import changed

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from undula.analysis.linear.results import CriticalCurve, Crossing, GrowthCurve, Onset, Spectrum
+from undula.analysis.linear.curves import CriticalCurve, GrowthCurve
+from undula.analysis.linear.results import Crossing, Onset, Spectrum
 from undula.models.units import Units
 from undula.terminal.numbers import with_error
 from undula.terminal.units_text import units_lines

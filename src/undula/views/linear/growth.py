@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from undula.analysis.linear.results import GrowthCurve
+from undula.analysis.linear.curves import GrowthCurve
 from undula.arrays import Array
 from undula.views.common import style
 from undula.views.linear.growth_maps import draw_maps

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from undula.analysis.linear.results import GrowthCurve
+from undula.analysis.linear.curves import GrowthCurve
 from undula.arrays import Array
 from undula.views.common import style
 from undula.views.common.legends import fitting_legend

@@ -11,7 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from undula.analysis.linear.results import GrowthCurve, Onset, Spectrum
+from undula.analysis.linear.curves import GrowthCurve
+from undula.analysis.linear.results import Onset, Spectrum
 from undula.errors import InputError
 from undula.views.common import style
 from undula.views.linear.growth import draw_growth, set_span, start_at_zero

@@ -7,7 +7,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from undula.analysis.linear.results import CriticalCurve
+from undula.analysis.linear.curves import CriticalCurve
 from undula.arrays import Array
 from undula.views.common import style
 from undula.views.common.legends import fitting_legend

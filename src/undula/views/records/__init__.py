@@ -1,0 +1,1 @@
+"""Figures and tables of records, as `record.plot()` and notebooks show them."""
