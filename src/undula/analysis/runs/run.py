@@ -30,7 +30,7 @@ from undula.analysis.runs.classify_run import Classified, Exponents, Watch, fail
 from undula.analysis.runs.fine_tail import CloseUp, close_up
 from undula.analysis.runs.finite_separation import Separation
 from undula.analysis.runs.reached_state import ReachedState
-from undula.analysis.runs.run_facts import extents_of, facts_of, line_of
+from undula.analysis.runs.run_facts import exponents_of, extents_of, facts_of, line_of
 from undula.analysis.runs.settled_motion import Settled
 from undula.analysis.runs.simulation import Simulation
 from undula.analysis.runs.stop_rule import Observation
@@ -246,6 +246,7 @@ class Run(Record):
         window = self.window
         units, force = self.model.units, self.model.load.force
         other_units = units.force_in(force)
+        precession = None if self.model.axisymmetric else self.precession
         return {
             "status": self.ending.value,
             "cause": self.cause or None,
@@ -259,7 +260,7 @@ class Run(Record):
             "evidence": self.verdict.evidence,
             "margin": self.verdict.margin,
             "longer": self.verdict.longer,
-            "lyapunov": self._exponents(),
+            "lyapunov": exponents_of(self.lyapunov, self.separation),
             "without_lyapunov": self.without_lyapunov or None,
             **self.figures(),
             "winding_angle": float(azimuth(self.motion.nodes)[-1]),
@@ -281,7 +282,8 @@ class Run(Record):
 
     def to_xarray(self) -> xr.Dataset:
         """Return the run as a dataset over time, node and axis, as `dataset_of` does."""
-        return function_by_name("undula.analysis.runs.dataset:dataset_of")(self)  # type: ignore[no-any-return]
+        dataset: xr.Dataset = function_by_name("undula.analysis.runs.dataset:dataset_of")(self)
+        return dataset
 
     def save(self, path: Path | str, *, overwrite: bool = False) -> None:
         """Store the run as `undula run` does; `undula.load` and all commands read it."""
@@ -290,14 +292,8 @@ class Run(Record):
 
     def movie(self, path: Path | str, *, frames: int = 240, fps: int = 30) -> Path:
         """Make an MP4 movie of the run, as `undula.views.movie` does; return its name."""
-        make = function_by_name("undula.views.run.movie:movie")
-        return Path(make(self.to_xarray(), path, frames=frames, fps=fps))
-
-    def _exponents(self) -> dict[str, Any] | None:
-        if self.lyapunov is None:
-            return None
-        parting = self.separation and self.separation.as_dict()
-        return {**self.lyapunov.as_dict(), "finite_separation": parting}
+        draw = function_by_name("undula.views.run.movie:movie")
+        return Path(draw(self.to_xarray(), path, frames=frames, fps=fps))
 
     def __str__(self) -> str:
         """Return verdict, frequency and accuracy in one line."""

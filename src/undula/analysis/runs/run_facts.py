@@ -8,6 +8,8 @@ from undula.analysis.observables.planarity import planarity
 from undula.analysis.observables.shapes import envelope, tip_height, tip_radius
 from undula.analysis.observables.trajectory import Motion
 from undula.analysis.record import Fact
+from undula.analysis.regimes.lyapunov import Lyapunov
+from undula.analysis.runs.finite_separation import Separation
 
 _RANGES = {"bending_energy": "energy", "tip_radius": "length", "tip_height": "length"}
 
@@ -28,6 +30,14 @@ def extents_of(window: Motion, planarity_share: float | None) -> dict[str, Any]:
         "tip_height": asdict(envelope(tip_height(window.nodes))),
         "planarity": planarity(window.nodes) if planarity_share is None else planarity_share,
     }
+
+
+def exponents_of(lyapunov: Lyapunov | None, separation: Separation | None) -> dict[str, Any] | None:
+    """Return Lyapunov exponents and the divergence of pairs of runs, in plain JSON types."""
+    if lyapunov is None:
+        return None
+    pairs = separation and separation.as_dict()
+    return {**lyapunov.as_dict(), "finite_separation": pairs}
 
 
 def facts_of(summary: Mapping[str, Any]) -> dict[str, Fact]:
