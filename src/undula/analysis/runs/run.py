@@ -246,7 +246,7 @@ class Run(Record):
         window = self.window
         units, force = self.model.units, self.model.load.force
         other_units = units.force_in(force)
-        precession = None if self.model.axisymmetric else self.precession
+        turning = None if self.model.axisymmetric else self.precession
         return {
             "status": self.ending.value,
             "cause": self.cause or None,
@@ -264,9 +264,7 @@ class Run(Record):
             "without_lyapunov": self.without_lyapunov or None,
             **self.figures(),
             "winding_angle": float(azimuth(self.motion.nodes)[-1]),
-            "precession": None
-            if self.model.axisymmetric
-            else self.precession and asdict(self.precession),
+            "precession": asdict(precession) if precession else None,
             "time": float(self.motion.time[-1]),
             "window": [float(window.time[0]), float(window.time[-1])],
             "settled": self.observation.as_dict() if self.observation else None,
