@@ -6,7 +6,7 @@ import undula as un
 from commands import Ask, answer, text
 from undula.analysis.linear.stability import method_for_all
 from undula.analysis.solvers.threshold_record import Threshold
-from undula.analysis.solvers.thresholds import threshold, threshold_curve
+from undula.analysis.solvers.thresholds import single_threshold, threshold_curve
 from undula.terminal.numbers import BODY, LINKS, digits, on_links, with_error, with_error_of
 
 TWELVE = un.Filament(segments=12, load=un.TipLoad(75.0))
@@ -39,8 +39,8 @@ def value_of(found: Threshold) -> float:
 
 
 def test_the_error_of_a_threshold_reaches_to_that_of_the_filament() -> None:
-    few = threshold(TWELVE, "spinning-lost")
-    limit = threshold(TWELVE, "spinning-lost", converged=True)
+    few = single_threshold(TWELVE, "spinning-lost")
+    limit = single_threshold(TWELVE, "spinning-lost", converged=True)
     assert few.error is not None
     assert limit.error is not None
     true = abs(value_of(few) - value_of(limit))
@@ -55,13 +55,16 @@ def test_the_error_of_a_threshold_reaches_to_that_of_the_filament() -> None:
 
 
 def test_the_error_of_an_onset_by_links_reaches_to_that_of_the_continuum() -> None:
-    by_links, exact = threshold(TWELVE, "onset", method="discrete"), threshold(TWELVE, "onset")
+    by_links, exact = (
+        single_threshold(TWELVE, "onset", method="discrete"),
+        single_threshold(TWELVE, "onset"),
+    )
     assert (by_links.links, exact.links) == ((12,), ())
     # As above.
     assert by_links.error == pytest.approx(value_of(exact) - value_of(by_links), rel=0.2)
     assert by_links.solver_error is not None
     assert by_links.solver_error < 1e-8
-    weak = threshold(TWELVE.with_(inextensibility="weak"), "onset", converged=True)
+    weak = single_threshold(TWELVE.with_(inextensibility="weak"), "onset", converged=True)
     assert len(weak.links) >= 3
     assert weak.error is not None
     assert weak.error < 1e-3
@@ -69,7 +72,7 @@ def test_the_error_of_an_onset_by_links_reaches_to_that_of_the_continuum() -> No
 
 def test_the_links_of_a_chain_are_its_body() -> None:
     for kind in ("onset", "spinning-lost"):
-        found = threshold(THREE, kind)
+        found = single_threshold(THREE, kind)
         assert found.error == found.solver_error
         assert found.links == (3,)
 

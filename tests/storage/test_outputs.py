@@ -340,7 +340,7 @@ def test_a_figure_of_others_is_told_before_steps_are_made(
     ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path("steps.png").write_bytes(MINE)
-    monkeypatch.setattr("undula.app.commands.step.ramp", lambda *_, **__: pytest.fail("made"))
+    monkeypatch.setattr("undula.app.commands.step.ramp_steps", lambda *_, **__: pytest.fail("made"))
     assert "steps.png does not carry the mark" in refused(
         ask("step", "--along", "load.force=1:2:1", "--out", ".")
     )

@@ -142,9 +142,7 @@ def test_a_study_that_is_done_starts_no_workers(
     ask: Ask,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(
-        "undula.app.commands.sweep.pool", lambda *_: pytest.fail("they were started")
-    )
+    monkeypatch.setattr("undula.sweeps.compute.pool", lambda *_: pytest.fail("they were started"))
     store = swept[0].parent / "s.zarr"
     again = answer(ask("sweep", swept[0], "--out", store, "--json"))
     assert again["verdicts"] == swept[1]["verdicts"]

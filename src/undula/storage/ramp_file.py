@@ -115,11 +115,11 @@ def load_ramp(path: Path | str) -> xr.Dataset:
     >>> import tempfile
     >>> from pathlib import Path
     >>> import undula as un
-    >>> from undula.analysis.ramps.ramp import Ramp, ramp
+    >>> from undula.analysis.ramps.ramp import Ramp, ramp_steps
     >>> from undula.analysis.run_settings import Schedule
     >>> from undula.storage.ramp_file import Series, write_ramp
     >>> model, values = un.Filament(4, un.TipLoad(1.0)), Ramp("load.force", (1.0, 2.0))
-    >>> steps = list(ramp(model, values, un.straight(model), Schedule(until=0.1, samples=20)))
+    >>> steps = list(ramp_steps(model, values, un.straight(model), Schedule(until=0.1, samples=20)))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder) / "steps.nc"
     ...     write_ramp(file, Series({}, "tip force", model, values), steps)

@@ -34,7 +34,7 @@ _MODULES: Mapping[str, tuple[str, ...]] = {
     "undula.analysis.linear.curves": ("GrowthCurve", "CriticalCurve"),
     "undula.analysis.solvers.threshold_record": ("Threshold", "ThresholdCurve"),
     "undula.analysis.solvers.threshold_search": ("Missed",),
-    "undula.analysis.solvers.sensitivities": ("Sensitivities",),
+    "undula.analysis.sensitivity.sensitivities": ("Sensitivities",),
     "undula.analysis.regimes.lyapunov": ("Lyapunov",),
 }
 #: Module of each class.

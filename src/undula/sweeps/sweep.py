@@ -19,7 +19,7 @@ from undula.analysis.parameters import FORCE
 from undula.analysis.runs.memory_needed import refuse_too_large
 from undula.errors import InputError
 from undula.inputs.build import build_model, build_schedule, build_start
-from undula.inputs.input import RunInput, SweepInput, parse_input, read_tables
+from undula.inputs.input import RunInput, SweepInput, changed_tables, parse_input, read_tables
 from undula.inputs.messages import nearest
 from undula.inputs.sweep_table import MOST_POINTS, SweepTable
 
@@ -165,10 +165,28 @@ def read_sweep(path: Path, overrides: Sequence[str] = ()) -> Sweep:
         The file cannot be read, a key or value is wrong, an axis varies a key that is not a
         number, or the input of a point is invalid. The sentence names the culprit.
     """
-    tables, checked = read_tables(SweepInput, path, overrides)
+    return _checked_sweep(*read_tables(SweepInput, path, overrides), str(path))
+
+
+def sweep_from_tables(tables: Mapping[str, Any]) -> Sweep:
+    """Return the sweep of tables as a file would hold them, checked as `read_sweep` does.
+
+    Raises
+    ------
+    InputError
+        As of `read_sweep`.
+    """
+    if not isinstance(tables, Mapping):
+        raise InputError(
+            f"{type(tables).__name__} is no input of a sweep; give its tables by name, or a file"
+        )
+    return _checked_sweep(*changed_tables(SweepInput, tables, ()), "the input")
+
+
+def _checked_sweep(tables: Tables, checked: SweepInput, name: str) -> Sweep:
     if not checked.study.axes:
         raise InputError(
-            f"{path} varies nothing; add a table [study] and [[study.axes]] with key and values"
+            f"{name} varies nothing; add a table [study] and [[study.axes]] with key and values"
         )
     return _resolved_sweep(
         checked.study, {name: tables.get(name, {}) for name in RunInput.model_fields}

@@ -19,7 +19,7 @@ from undula.analysis.maps.stability_boundaries import (
     stability_boundaries,
 )
 from undula.analysis.maps.stability_intervals import StabilityIntervals, straight_intervals
-from undula.analysis.solvers.thresholds import threshold
+from undula.analysis.solvers.thresholds import single_threshold
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning
 from undula.sweeps.boundary_cache import NAME, read_boundaries, write_boundaries
@@ -80,7 +80,7 @@ def test_on_both_sides_of_a_border_states_are_stable_and_unstable(
 def test_a_border_is_the_threshold_of_that_name() -> None:
     # Located to 1e-9 of the way that was followed, some hundreds.
     assert force_of("spinning-lost") == pytest.approx(
-        threshold(EIGHT, "spinning-lost").value, abs=1e-6
+        single_threshold(EIGHT, "spinning-lost").value, abs=1e-6
     )
 
 

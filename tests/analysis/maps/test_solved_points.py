@@ -12,7 +12,7 @@ from refusal import complaint
 from undula.analysis.linear.spectrum import spectrum
 from undula.analysis.maps.stability_along_force import solved_record, stability_along_force
 from undula.analysis.maps.states_at_forces import states_along
-from undula.analysis.solvers.thresholds import threshold
+from undula.analysis.solvers.thresholds import single_threshold
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.records import Flapping, Spinning
 
@@ -98,7 +98,7 @@ def test_below_the_onset_the_filament_is_straight() -> None:
 
 def test_between_the_thresholds_both_motions_are_told() -> None:
     # 141 lies between the forces from which flapping is and up to which spinning is stable.
-    lost = threshold(EIGHT, "spinning-lost").value
+    lost = single_threshold(EIGHT, "spinning-lost").value
     assert lost is not None
     assert 141.0 < lost < 160.0
     assert (at(141.0)["verdict"], at(141.0)["also"]) == ("spinning", "planar flapping")

@@ -16,7 +16,7 @@ import xarray as xr
 
 from commands import Ask, answer, refused
 from refusal import complaint
-from undula.analysis.ramps.ramp import Ramp, Step, ramp
+from undula.analysis.ramps.ramp import Ramp, Step, ramp_steps
 from undula.analysis.ramps.regime_changes import (
     Hysteresis,
     RegimeChange,
@@ -158,7 +158,7 @@ def test_steps_settle_unless_the_input_gives_a_time() -> None:
 
 
 def steps_of(model: Any, course: Ramp, start: Any, **schedule: Any) -> list[Step]:
-    return list(ramp(model, course, start, Schedule(**(asdict(SETTLE) | schedule))))
+    return list(ramp_steps(model, course, start, Schedule(**(asdict(SETTLE) | schedule))))
 
 
 def test_a_kick_leaves_a_state_that_is_unstable_and_none_keeps_it() -> None:
@@ -326,7 +326,7 @@ def stopping_after(count: int) -> Callable[..., Iterator[Step]]:
             if done == count:
                 signal.raise_signal(signal.SIGINT)
 
-        for step in ramp(*given, progress=interrupt, **options):
+        for step in ramp_steps(*given, progress=interrupt, **options):
             done += 1
             yield step
 
@@ -339,7 +339,7 @@ def test_an_interrupted_series_goes_on_to_the_same_end(
     words = ["step", *TWO, *THROUGH, "--out", "split", "--json"]
     for count, held in ((2, 2), (1, 3)):
         with monkeypatch.context() as patch:
-            patch.setattr(stepping, "ramp", stopping_after(count))
+            patch.setattr(stepping, "ramp_steps", stopping_after(count))
             stopped = ask(*words)
         found = answer(stopped, status=3)
         assert (found["status"], len(found["steps"]), found["missing"]) == (
@@ -360,7 +360,7 @@ def test_a_spent_budget_keeps_what_there_is(
     nothing = answer(ask(*words, "--budget", "1e-9"), status=3)
     assert (nothing["status"], nothing["steps"], nothing["store"]) == ("out of time", [], None)
     with monkeypatch.context() as patch:
-        patch.setattr(stepping, "ramp", stopping_after(3))
+        patch.setattr(stepping, "ramp_steps", stopping_after(3))
         ask(*words)
     again = answer(ask(*words, "--budget", "1e-9"), status=3)
     assert (again["status"], len(again["steps"])) == ("out of time", 3)
@@ -372,7 +372,7 @@ def test_a_spent_budget_keeps_what_there_is(
 def test_an_interruption_before_the_first_step_leaves_nothing(
     ask: Ask, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stepping, "ramp", stopping_after(0))
+    monkeypatch.setattr(stepping, "ramp_steps", stopping_after(0))
     assert ask("step", *TWO, *THROUGH, "--out", "none")[:2] == (130, "")
     assert not Path("none").exists()
 

@@ -17,7 +17,7 @@ from pages import ROOT
 from refusal import complaint
 from small_sweeps import done, sweep_of
 from undula.analysis.linear.leading_rate import leading_rate
-from undula.analysis.ramps.ramp import Ramp, ramp
+from undula.analysis.ramps.ramp import Ramp, ramp_steps
 from undula.analysis.regimes import names, names_without_symmetry
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs import credibility
@@ -268,7 +268,7 @@ def test_undecided_points_can_be_decided_by_the_solved_states(tmp_path: Path) ->
 def test_steps_of_a_series_keep_to_the_same_rules() -> None:
     course = Ramp("load.force", (60.0, 75.0), kick=0.0)
     schedule = Schedule(until="settled", limit=2.0, samples=400)
-    steps = list(ramp(TEN, course, un.kicked(TEN, 1e-10), schedule))
+    steps = list(ramp_steps(TEN, course, un.kicked(TEN, 1e-10), schedule))
     assert [step.verdict for step in steps] == ["undecided", "undecided"]
 
 

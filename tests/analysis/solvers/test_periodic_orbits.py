@@ -12,7 +12,7 @@ from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
 from undula.analysis.solvers.periodic_search import find_periodic
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.threshold_record import Threshold
-from undula.analysis.solvers.thresholds import threshold
+from undula.analysis.solvers.thresholds import single_threshold
 from undula.analysis.states.branch import Bifurcation
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
@@ -33,7 +33,7 @@ def settled() -> Run:
 @pytest.fixture(scope="module")
 def gained() -> Threshold:
     """Give the force at which planar flapping becomes stable in space, with few links."""
-    return threshold(Filament(12, TipLoad(1.0)), "flapping-gained")
+    return single_threshold(Filament(12, TipLoad(1.0)), "flapping-gained")
 
 
 def known(threshold: Threshold) -> Bifurcation[Flapping]:
@@ -79,7 +79,7 @@ def test_a_confined_model_has_no_such_state(settled: Run) -> None:
 
 @pytest.mark.slow
 def test_what_flapping_gives_birth_to_ends_where_spinning_is_lost(gained: Threshold) -> None:
-    lost = threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
+    lost = single_threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
     assert gained.value is not None
     assert lost.value is not None
     branch = follow_from_bifurcation(known(gained), lost.value + 5.0)
@@ -94,7 +94,7 @@ def test_what_flapping_gives_birth_to_ends_where_spinning_is_lost(gained: Thresh
 
 
 def test_only_a_symmetry_breaking_of_flapping_gives_birth() -> None:
-    spinning = threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
+    spinning = single_threshold(Filament(12, TipLoad(1.0)), "spinning-lost")
     assert "torus of Spinning" in complaint(lambda: follow_from_bifurcation(known(spinning), 300.0))
 
 

@@ -16,7 +16,7 @@ from refusal import complaint
 from undula.analysis.solvers.branches import follow
 from undula.analysis.solvers.spinning import FORCE, find_spinning
 from undula.analysis.solvers.state_kinds import extrapolate
-from undula.analysis.solvers.thresholds import threshold
+from undula.analysis.solvers.thresholds import single_threshold
 from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import TurningShape
@@ -351,7 +351,7 @@ def envelope_rate(model: Filament, state: Spinning, seed: int) -> float:
 @pytest.mark.parametrize("segments", [12, 16])
 def test_a_disturbance_decays_below_the_loss_and_grows_above_it_as_foretold(segments: int) -> None:
     model = Filament(segments, TipLoad(75.0))
-    loss = threshold(model, "spinning-lost")
+    loss = single_threshold(model, "spinning-lost")
     assert loss.value is not None
     assert loss.bifurcation == "torus"
     for part in (0.98, 1.02):
@@ -365,7 +365,7 @@ def test_a_disturbance_decays_below_the_loss_and_grows_above_it_as_foretold(segm
 
 def test_at_the_loss_a_pair_is_on_the_axis_with_the_second_frequency() -> None:
     model = Filament(12, TipLoad(75.0))
-    loss = threshold(model, "spinning-lost")
+    loss = single_threshold(model, "spinning-lost")
     assert loss.value is not None
     assert loss.error is not None
     state = solved(model.with_(force=loss.value))

@@ -5,7 +5,7 @@ import pytest
 import undula as un
 from refusal import complaint
 from undula.analysis.solvers.criticality import is_subcritical
-from undula.analysis.solvers.thresholds import threshold, threshold_curve
+from undula.analysis.solvers.thresholds import single_threshold, threshold_curve
 from undula.app.cli import main
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
@@ -14,7 +14,7 @@ LOW = un.Filament(12, un.PointLoad(97.0, 0.4))
 
 
 def reason(model: un.Filament, kind: str, up_to: float) -> tuple[str, float | None]:
-    found = threshold(model, kind, up_to=up_to)
+    found = single_threshold(model, kind, up_to=up_to)
     assert found.value is None
     assert found.reason is not None
     return found.reason, found.searched_to
@@ -56,14 +56,14 @@ def test_a_search_that_ends_before_the_branch_begins_says_so() -> None:
 
 
 def test_a_farther_search_finds_what_a_nearer_one_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = threshold(EIGHT, "spinning-lost")
+    whole = single_threshold(EIGHT, "spinning-lost")
     monkeypatch.setattr("undula.analysis.solvers.threshold_search.FARTHEST", 1.5)
-    none = threshold(EIGHT, "spinning-lost")
+    none = single_threshold(EIGHT, "spinning-lost")
     assert none.value is None
     assert none.searched_to == pytest.approx(1.5 * 35.193, rel=1e-3)
     assert "a larger up_to looks farther" in str(none)
     # Beyond the first stretch it goes on in further ones.
-    found = threshold(EIGHT, "spinning-lost", up_to=150.0)
+    found = single_threshold(EIGHT, "spinning-lost", up_to=150.0)
     # Each is located to 1e-9 of its way.
     assert found.value == pytest.approx(whole.value, abs=1e-5)
 
@@ -79,7 +79,7 @@ def test_a_branch_that_is_born_downwards_is_searched_from_its_fold_on() -> None:
     assert is_subcritical(LOW, "spinning")
     assert not is_subcritical(LOW, "flapping")
     reached: list[float] = []
-    found = threshold(
+    found = single_threshold(
         LOW, "spinning-lost", up_to=0.99 * onset, progress=lambda _, force: reached.append(force)
     )
     assert found.reason is not None
@@ -94,7 +94,7 @@ def test_a_branch_that_is_born_downwards_is_searched_from_its_fold_on() -> None:
 
 def test_bounds_that_are_none_are_refused() -> None:
     for bound in (0.0, -1.0, float("nan"), float("inf")):
-        assert "force above 0" in complaint(lambda: threshold(EIGHT, "onset", up_to=bound))  # noqa: B023
+        assert "force above 0" in complaint(lambda: single_threshold(EIGHT, "onset", up_to=bound))  # noqa: B023
 
 
 @pytest.mark.parametrize("words", [["0"], ["-3"], ["nan"], ["inf"]])
@@ -118,7 +118,8 @@ def test_a_filament_of_other_symmetries_is_refused_before_any_search(
     kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        "undula.analysis.solvers.thresholds.threshold", lambda *_, **__: pytest.fail("searched")
+        "undula.analysis.solvers.thresholds.single_threshold",
+        lambda *_, **__: pytest.fail("searched"),
     )
     for parameter, values in (
         ("model.bending_ratio", [1.0, 1.25, 1.5]),

@@ -11,7 +11,7 @@ from undula.analysis.solvers.flapping import find_flapping
 from undula.analysis.solvers.refind import limit_of, refind_bifurcation
 from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.threshold_record import Threshold
-from undula.analysis.solvers.thresholds import THRESHOLDS, threshold, threshold_curve
+from undula.analysis.solvers.thresholds import THRESHOLDS, single_threshold, threshold_curve
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.records import Flapping, Spinning
@@ -25,7 +25,7 @@ PULLED = un.Filament(
 
 @cache
 def of_eight(kind: str) -> Threshold:
-    return threshold(EIGHT, kind)
+    return single_threshold(EIGHT, kind)
 
 
 def value_of(found: Threshold) -> float:
@@ -112,7 +112,11 @@ def test_a_curve_holds_the_thresholds_of_single_searches(kind: str, ratios: list
     )
     assert seen == [(1 + k, len(ratios)) for k in range(len(ratios))]
     for ratio, found in zip(ratios, curve, strict=True):
-        single = of_eight(kind) if ratio == 2.0 else threshold(EIGHT.with_(drag_ratio=ratio), kind)
+        single = (
+            of_eight(kind)
+            if ratio == 2.0
+            else single_threshold(EIGHT.with_(drag_ratio=ratio), kind)
+        )
         # Each is located on its own way, to 1e-9 of it.
         assert found.value == pytest.approx(value_of(single), abs=1e-6)
         assert found.bifurcation == single.bifurcation
@@ -124,7 +128,7 @@ def test_a_curve_begins_each_search_at_the_threshold_before() -> None:
     reached: dict[bool, list[float]] = {True: [], False: []}
     for begun, forces in reached.items():
         near = first if begun else None
-        found = threshold(
+        found = single_threshold(
             other, "spinning-lost", near=near, progress=lambda _, force, to=forces: to.append(force)
         )
         assert found.value == pytest.approx(value_of(first), rel=0.02)
@@ -150,7 +154,7 @@ def test_a_curve_goes_on_beyond_a_value_without_a_threshold(
         ratio = model.drag_ratio
         return Threshold(kind, None if ratio == 2.0 else ratio, reason=f"{converged}")
 
-    monkeypatch.setattr("undula.analysis.solvers.thresholds.threshold", fake)
+    monkeypatch.setattr("undula.analysis.solvers.thresholds.single_threshold", fake)
     found = threshold_curve(EIGHT, "spinning-lost", "model.drag_ratio", [1.0, 2.0, 3.0, 4.0])
     assert [one.value for one in found] == [1.0, None, 3.0, 4.0]
     assert asked == [None, found[0], None, found[2]]
@@ -158,7 +162,7 @@ def test_a_curve_goes_on_beyond_a_value_without_a_threshold(
 
 @pytest.mark.parametrize("kind", THRESHOLDS)
 def test_a_filament_that_is_pulled_has_no_threshold_and_says_why(kind: str) -> None:
-    found = threshold(PULLED, kind)
+    found = single_threshold(PULLED, kind)
     assert (found.value, found.error, found.frequency, found.at) == (None, None, None, None)
     assert found.reason is not None
     assert "stable" in found.reason
@@ -170,19 +174,19 @@ def test_flapping_that_is_held_in_its_plane_has_nothing_to_gain(
 ) -> None:
     # Near enough that only the beginning of the branch is followed.
     monkeypatch.setattr("undula.analysis.solvers.threshold_search.FARTHEST", 2.0)
-    found = threshold(CONFINED, "flapping-gained")
+    found = single_threshold(CONFINED, "flapping-gained")
     assert found.value is None
     assert found.reason is not None
     assert found.reason.startswith("flapping is stable from its beginning at force ")
 
 
 def test_a_confined_model_is_told_that_it_cannot_spin() -> None:
-    assert "cannot spin" in complaint(lambda: threshold(CONFINED, "spinning-lost"))
+    assert "cannot spin" in complaint(lambda: single_threshold(CONFINED, "spinning-lost"))
 
 
 @pytest.mark.parametrize("kind", ["", "spinning", "Onset", "flapping-won"])
 def test_a_threshold_of_no_known_name_is_refused_with_those_that_are(kind: str) -> None:
-    told = complaint(lambda: threshold(EIGHT, kind))
+    told = complaint(lambda: single_threshold(EIGHT, kind))
     assert repr(kind) in told
     for known in THRESHOLDS:
         assert known in told
@@ -205,8 +209,8 @@ def test_a_curve_along_what_the_model_does_not_have_is_refused() -> None:
 def test_many_links_are_reached_from_few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("undula.analysis.states.extrapolation.REFINEMENTS", (1, 2, 4))
     few = EIGHT.with_(segments=6)
-    limit = threshold(few, "spinning-lost", converged=True)
-    single = [threshold(few.with_(segments=6 * part), "spinning-lost") for part in (1, 2, 4)]
+    limit = single_threshold(few, "spinning-lost", converged=True)
+    single = [single_threshold(few.with_(segments=6 * part), "spinning-lost") for part in (1, 2, 4)]
     expected, error = extrapolated([value_of(one) for one in single])
     # Located to 1e-9 of the way each, and extrapolated with weights of order 1.
     assert limit.value == pytest.approx(expected, abs=1e-5)
@@ -228,13 +232,13 @@ def test_a_bifurcation_moves_to_other_links_though_it_is_not_near() -> None:
     # A fifth higher: beyond the nearest surroundings that are looked through first.
     assert again.value > 1.1 * known.value
     assert again.value == pytest.approx(
-        value_of(threshold(EIGHT.with_(segments=16), "spinning-lost"))
+        value_of(single_threshold(EIGHT.with_(segments=16), "spinning-lost"))
     )
 
 
 def test_a_bifurcation_at_the_edge_of_a_range_is_found_again_within_it() -> None:
     # Along the drag ratio, which is at least 1.
-    near_one = threshold(EIGHT.with_(drag_ratio=1.02), "spinning-lost")
+    near_one = single_threshold(EIGHT.with_(drag_ratio=1.02), "spinning-lost")
     state = find_spinning(EIGHT.with_(force=value_of(near_one), drag_ratio=1.1))
     assert isinstance(state, Spinning)
     branch = un.follow(state, "model.drag_ratio", 1.0)

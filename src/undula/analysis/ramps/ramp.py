@@ -174,7 +174,7 @@ class Step:
     shapes: Shapes
 
 
-def ramp(
+def ramp_steps(
     model: Model,
     course: Ramp,
     start: State,

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from undula.analysis.arguments import require_model
+from undula.analysis.one_thread import on_one_thread
 from undula.analysis.regimes.verdict import UNDECIDED
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.classify_run import CutShortError, Exponents, Watch
@@ -57,6 +59,7 @@ class Progress:
     exponents: tuple[str, float] | None = None
 
 
+@on_one_thread
 def integrate(
     model: Model,
     start: State,
@@ -116,6 +119,7 @@ def integrate(
     >>> run.motion.nodes.shape
     (3, 5, 3)
     """
+    require_model(model, "integrate")
     schedule = Schedule(until=until, limit=limit, samples=samples, rtol=rtol, atol=atol)
     simulation = Simulation.begin(model, start, schedule)
     begun = time.monotonic()

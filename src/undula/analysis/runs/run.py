@@ -264,7 +264,7 @@ class Run(Record):
             "without_lyapunov": self.without_lyapunov or None,
             **self.figures(),
             "winding_angle": float(azimuth(self.motion.nodes)[-1]),
-            "precession": asdict(precession) if precession else None,
+            "precession": asdict(turning) if turning else None,
             "time": float(self.motion.time[-1]),
             "window": [float(window.time[0]), float(window.time[-1])],
             "settled": self.observation.as_dict() if self.observation else None,

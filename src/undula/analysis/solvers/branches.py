@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from undula.analysis.arguments import require_state
+from undula.analysis.one_thread import on_one_thread
 from undula.analysis.parameters import FORCE, value_of
 from undula.analysis.solvers.state_kinds import Solved, kind_by_name, kind_of_state
 from undula.analysis.states.along_parameter import model_along, with_unknowns_of
@@ -20,6 +22,7 @@ _SCALES = 8.0
 _FIRST_ARCLENGTH = 0.03
 
 
+@on_one_thread
 def follow(
     state: Solved,
     parameter: str,
@@ -69,6 +72,7 @@ def follow(
     >>> branch.complete, all(state.stable for state in branch.states)
     (True, True)
     """
+    require_state(state, "follow")
     solver, start = kind_of_state(state), value_of(state.model, parameter)
     model = model_along(state.model, state.kind, parameter, (start, to))
     if to == start:
@@ -85,6 +89,7 @@ def follow(
     )
 
 
+@on_one_thread
 def follow_from_onset(
     model: Model,
     kind: str,

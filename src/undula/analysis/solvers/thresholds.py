@@ -11,11 +11,14 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from undula.analysis.linear.results import Method, Onset
 from undula.analysis.linear.stability import method_for_all, onset
+from undula.analysis.one_thread import on_one_thread
 from undula.analysis.parameters import FORCE, changed
 from undula.analysis.solvers.refind import alike, quantities_of, refind_bifurcation
-from undula.analysis.solvers.threshold_record import Threshold, without_value
+from undula.analysis.solvers.threshold_record import Threshold, ThresholdCurve, without_value
 from undula.analysis.solvers.threshold_search import WANTED, search
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation
@@ -28,7 +31,7 @@ from undula.models.model import Model
 THRESHOLDS: tuple[str, ...] = tuple(WANTED)
 
 
-def threshold(
+def single_threshold(
     model: Model,
     kind: str,
     *,
@@ -68,16 +71,6 @@ def threshold(
     InputError
         The kind is not one of these, the model cannot have such a state or has no limit of many
         links, or `up_to` is out of range.
-
-    Examples
-    --------
-    The straight filament under a tip load is lost at the force of De Canio, Lauga & Goldstein,
-    J. R. Soc. Interface 14 (2017) 20170491:
-
-    >>> import undula as un
-    >>> onset = un.threshold(un.Filament(40, un.TipLoad(75.0)), "onset")
-    >>> round(onset.value, 4), onset.bifurcation
-    (37.6954, 'Hopf')
     """
     _check_kind(kind)
     if up_to is not None and not (is_number(up_to) and up_to > 0.0):
@@ -89,6 +82,7 @@ def threshold(
     return replace(solved, model=model)
 
 
+@on_one_thread
 def threshold_curve(
     model: Model,
     kind: str,
@@ -99,7 +93,7 @@ def threshold_curve(
     up_to: float | None = None,
     progress: Callable[[int, int], None] | None = None,
     stop: Callable[[], bool] = lambda: False,
-) -> tuple[Threshold, ...]:
+) -> ThresholdCurve:
     """Return a threshold at each value of a second parameter, each searched next to the last.
 
     All onsets are computed by one method: on the links at every value if the method of the
@@ -120,8 +114,8 @@ def threshold_curve(
 
     Returns
     -------
-    tuple of Threshold
-        One for each value, fewer if stopped.
+    ThresholdCurve
+        A sequence of thresholds, one for each value, fewer if stopped.
 
     Raises
     ------
@@ -147,13 +141,14 @@ def threshold_curve(
     for done, here in enumerate(models, start=1):
         near = curve[-1] if curve and curve[-1].value is not None else None
         curve.append(
-            threshold(here, kind, converged=converged, near=near, up_to=up_to, method=method)
+            single_threshold(here, kind, converged=converged, near=near, up_to=up_to, method=method)
         )
         if progress:
             progress(done, len(models))
         if stop():
             break
-    return tuple(curve)
+    done_values = np.array([float(value) for value in values[: len(curve)]])
+    return ThresholdCurve(kind, parameter, done_values, tuple(curve))
 
 
 def _bifurcation(

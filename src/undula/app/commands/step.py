@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from undula.analysis.parameters import FORCE
-from undula.analysis.ramps.ramp import Ramp, Step, ramp
+from undula.analysis.ramps.ramp import Ramp, Step, ramp_steps
 from undula.analysis.run_settings import Ending
 from undula.analysis.solvers.threshold_record import Threshold
-from undula.analysis.solvers.thresholds import THRESHOLDS, threshold
+from undula.analysis.solvers.thresholds import THRESHOLDS, single_threshold
 from undula.app.commands.drawing import beside, save_figure
 from undula.app.commands.step_text import step_answer, step_text
 from undula.errors import InputError
@@ -172,7 +172,7 @@ def _compute(
             stepped("stepping", series.ramp.parameter, before, len(targets)) as show,
             compilation_announced(notice),
         ):
-            for step in ramp(
+            for step in ramp_steps(
                 series.model,
                 series.ramp,
                 start,
@@ -219,7 +219,7 @@ def _solve(model: Model, end: float) -> tuple[str, list[Threshold] | None]:
         with compilation_announced(notice):
             for name in THRESHOLDS:
                 with searching(name) as show:
-                    thresholds.append(threshold(model, name, progress=_until(end, show)))
+                    thresholds.append(single_threshold(model, name, progress=_until(end, show)))
     except KeyboardInterrupt:
         return "interrupted", None
     except _OutOfTimeError:

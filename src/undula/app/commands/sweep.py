@@ -6,22 +6,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from undula.analysis.run_settings import Ending
 from undula.app.commands.sweep_text import sweep_answer, sweep_text
 from undula.errors import InputError
-from undula.interrupts import interruptible
+from undula.sweeps.compute import compute
 from undula.sweeps.own_workers import workers_that_fit
-from undula.sweeps.point import point_record, point_records, row_records, software
 from undula.sweeps.store import SweepStore, load_sweep, open_sweep
 from undula.sweeps.sweep import Sweep, read_sweep
-from undula.sweeps.work_queue import SAVE_EVERY, SweepWork
-from undula.sweeps.workers import DiedError, LostError, Pool, pool
+from undula.sweeps.work_queue import SweepWork
 from undula.terminal.compile_notice import compilation_announced
 from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
 from undula.terminal.progress import swept
 
-#: Time to wait for results before the clock is checked again [s].
-_PATIENCE = 0.2
 #: Causes of an early end in words, by the status of the answer.
 _CAUSES = {
     "interrupted": "interrupted",
@@ -120,62 +115,16 @@ def report_status(path: Path, *, as_json: bool) -> int:
 
 def _compute(work: SweepWork, sweep: Sweep, request: SweepRequest, began: float) -> str:
     """Compute the missing points within the budget; return the status of the answer."""
-    try:
-        _compile(sweep)
-        with (
-            interruptible() as interrupted,
-            pool(request.workers, request.scheduler, notice) as workers,
-            swept("sweeping", work.total, work.left) as show,
-        ):
-            try:
-                while work.left:
-                    if interrupted():
-                        return "interrupted"
-                    if time.monotonic() - began > request.budget:
-                        return "out of time"
-                    _hand_out(work, sweep, workers)
-                    _take_back(work, workers)
-                    show(work.left, work.failed)
-            finally:
-                work.save()
-    except LostError as lost:
-        return lost.status
-    except KeyboardInterrupt:
-        return "interrupted"
-    return "done"
-
-
-def _compile(sweep: Sweep) -> None:
-    """Compile the kernels in this process, with a notice, before many workers need them."""
-    request = sweep.request(0)
-    if request["label"] == "runs":
-        request["tables"]["time"] |= {"until": 1e-6, "samples": 2}
-        request["tables"]["time"].pop("limit", None)
-        with compilation_announced(notice):
-            record = point_record(request)
-        if record.get("ending") == Ending.INTERRUPTED.value:
-            raise KeyboardInterrupt
-
-
-def _hand_out(work: SweepWork, sweep: Sweep, workers: Pool) -> None:
-    compute = row_records if sweep.whole_rows else point_records
-    while workers.has_room and (task := work.take()) is not None:
-        workers.give(task, compute, sweep.dump(), task.numbers)
-
-
-def _take_back(work: SweepWork, workers: Pool) -> None:
-    for task, outcome in workers.come_back(_PATIENCE):
-        if isinstance(outcome, DiedError):
-            work.died(task)
-            continue
-        version, records = outcome
-        if version != software():
-            raise InputError(
-                f"a worker runs undula {version} instead of {software()}; install that version"
-                " there"
-            )
-        work.take_back(task, records)
-    work.save(SAVE_EVERY)
+    return compute(
+        work,
+        sweep,
+        workers=request.workers,
+        scheduler=request.scheduler,
+        deadline=began + request.budget,
+        say=notice,
+        compiling=lambda: compilation_announced(notice),
+        progress=lambda: swept("sweeping", work.total, work.left),
+    )
 
 
 def _report_failures(answer: dict[str, Any], store: SweepStore) -> None:

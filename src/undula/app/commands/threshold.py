@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from undula.analysis.parameters import changed
-from undula.analysis.solvers.threshold_record import Threshold
-from undula.analysis.solvers.thresholds import threshold, threshold_curve
+from undula.analysis.solvers.threshold_record import Threshold, ThresholdCurve
+from undula.analysis.solvers.thresholds import single_threshold, threshold_curve
 from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.units import Units
@@ -37,7 +37,7 @@ def answer_threshold(
         Beginning of the text.
     """
     with searching(name) as progress:
-        result = threshold(model, name, converged=converge, up_to=up_to, progress=progress)
+        result = single_threshold(model, name, converged=converge, up_to=up_to, progress=progress)
     units = model.units
     answer = {"status": "done", "units": units.names(), "threshold": name}
     answer |= threshold_answer(result, units)
@@ -57,7 +57,7 @@ def answer_threshold_curve(
     converge: bool,
     up_to: float | None,
     title: str,
-) -> tuple[Answer, tuple[Threshold, ...]]:
+) -> tuple[Answer, ThresholdCurve]:
     """Return the answer for a threshold along a second parameter, and the thresholds.
 
     Parameters are those of `answer_threshold`; `along` is the second one's name and its values.
@@ -81,7 +81,7 @@ def _curve_answer(
     model: Model,
     name: str,
     along: tuple[str, tuple[float, ...]],
-    curve: tuple[Threshold, ...],
+    curve: ThresholdCurve,
     title: str,
 ) -> Answer:
     """Return the answer for the thresholds that were found along a second parameter."""

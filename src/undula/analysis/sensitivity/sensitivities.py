@@ -11,8 +11,8 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from undula.analysis.linear.onset_slopes import onset_slopes
 from undula.analysis.linear.results import Method
+from undula.analysis.one_thread import on_one_thread
 from undula.analysis.parameters import (
     FORCE,
     changed,
@@ -21,9 +21,10 @@ from undula.analysis.parameters import (
     value_of,
 )
 from undula.analysis.record import Fact, Record
+from undula.analysis.sensitivity.onset_slopes import onset_slopes
+from undula.analysis.sensitivity.state_slopes import RELATIVE_STEP, fold_slope, state_slopes
 from undula.analysis.solvers.quantities import quantities_of
 from undula.analysis.solvers.state_kinds import Solved
-from undula.analysis.solvers.state_slopes import RELATIVE_STEP, fold_slope, state_slopes
 from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.states.state import State
 from undula.errors import InputError
@@ -94,6 +95,7 @@ class Sensitivities(Record, Mapping[str, Mapping[str, float]]):
         return f"d {name} of {self.of} ({self.links} links) by {shown}"
 
 
+@on_one_thread
 def sensitivities(
     solved: Solved | Threshold, *, parameters: Sequence[str] | None = None
 ) -> Sensitivities:

@@ -1,0 +1,53 @@
+"""Arguments of the wrong kind, each answered with the right one."""
+
+import reprlib
+from typing import Any
+
+from undula.analysis.states.state import State
+from undula.errors import InputError
+from undula.models.linked_rod import LinkedRod
+
+
+def require_model(model: Any, verb: str) -> None:
+    """Refuse what is no model.
+
+    Parameters
+    ----------
+    model : object
+        The argument.
+    verb : str
+        Name of the function that it was given to.
+
+    Raises
+    ------
+    InputError
+        It is no model.
+    """
+    if not isinstance(model, LinkedRod):
+        raise InputError(
+            f"{verb} begins with a model, and {_named(model)} is none; give one such as"
+            " undula.Filament(20, undula.TipLoad(75.0))"
+        )
+
+
+def require_state(state: Any, verb: str) -> None:
+    """Refuse what is no solved state; arguments are those of `require_model`.
+
+    Raises
+    ------
+    InputError
+        It is no state.
+    """
+    if isinstance(state, State):
+        return
+    if isinstance(state, LinkedRod):
+        cure = 'solve for one first, as undula.find(model, "spinning")'
+    else:
+        cure = "give what undula.find returns"
+    raise InputError(f"{verb} begins with a state, and {_named(state)} is none; {cure}")
+
+
+def _named(value: Any) -> str:
+    if isinstance(value, LinkedRod):
+        return f"a {type(value).__name__}"
+    return f"{type(value).__name__} {reprlib.repr(value)}"

@@ -1,0 +1,1 @@
+"""Sensitivities: derivatives of solved states and thresholds by every parameter."""
