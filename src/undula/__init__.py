@@ -13,27 +13,42 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import undula.analysis.observables.shapes as observables
     import undula.views as views
+    from undula.analysis.linear.curves import CriticalCurve, GrowthCurve
+    from undula.analysis.linear.results import Crossing, Onset, Spectrum
     from undula.analysis.linear.spectrum import spectrum
     from undula.analysis.linear.stability import critical_curve, growth_curve, onset
     from undula.analysis.maps.basins import basins
     from undula.analysis.maps.contradictions import contradictions
     from undula.analysis.maps.stability_along_force import stability_along_force
     from undula.analysis.maps.stability_boundaries import stability_boundaries
-    from undula.analysis.regimes.lyapunov import lyapunov
+    from undula.analysis.observables.shapes import Range
+    from undula.analysis.ramps.quasi_static import RampResult, ramp
+    from undula.analysis.ramps.ramp import Ramp
+    from undula.analysis.record import Fact, Record
+    from undula.analysis.regimes.lyapunov import Lyapunov, NotFollowed, lyapunov
+    from undula.analysis.regimes.verdict import Verdict
     from undula.analysis.runs.dataset import dataset_of
-    from undula.analysis.runs.integrate import integrate
+    from undula.analysis.runs.integrate import Progress, integrate
     from undula.analysis.runs.run import Run
+    from undula.analysis.sensitivity.sensitivities import Sensitivities, sensitivities
     from undula.analysis.solvers.branches import follow, follow_from_onset
     from undula.analysis.solvers.criticality import criticality
     from undula.analysis.solvers.equilibrium import find_equilibrium
+    from undula.analysis.solvers.find import find
+    from undula.analysis.solvers.find_threshold import threshold
     from undula.analysis.solvers.flapping import find_flapping
     from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
     from undula.analysis.solvers.periodic_search import find_periodic
     from undula.analysis.solvers.spinning import find_spinning
     from undula.analysis.solvers.state_kinds import extrapolate
-    from undula.analysis.solvers.thresholds import threshold, threshold_curve
+    from undula.analysis.solvers.threshold_record import Threshold, ThresholdCurve
+    from undula.analysis.solvers.thresholds import threshold_curve
+    from undula.analysis.states.branch import Bifurcation, Bifurcations, Branch
+    from undula.analysis.states.extrapolation import Converged
+    from undula.analysis.states.not_found import NotFound, SearchStatus
     from undula.analysis.states.periodic_record import Periodic
     from undula.analysis.states.records import Equilibrium, Flapping, Spinning
+    from undula.analysis.states.state import State
     from undula.errors import InputError
     from undula.models.chain import Chain
     from undula.models.filament import Filament
@@ -42,40 +57,70 @@ if TYPE_CHECKING:
     from undula.models.loads.beads import BeadLoad
     from undula.models.loads.power import PowerLoad
     from undula.models.loads.user_density import ProfileLoad, TableLoad
+    from undula.models.model import Model
     from undula.models.natural_curvature import CurvatureTable
     from undula.models.scales import Scales
+    from undula.models.units import Units
     from undula.storage.ramp_file import load_ramp
     from undula.storage.run_file import load_result
     from undula.storage.unchecked import StoredWarning
+    from undula.sweeps.from_python import sweep
+    from undula.sweeps.load import load
     from undula.sweeps.store import load_sweep
 
 _MODULE_OF = {
     "BeadLoad": "undula.models.loads.beads",
+    "Bifurcation": "undula.analysis.states.branch",
+    "Bifurcations": "undula.analysis.states.branch",
+    "Branch": "undula.analysis.states.branch",
     "Chain": "undula.models.chain",
+    "Converged": "undula.analysis.states.extrapolation",
+    "CriticalCurve": "undula.analysis.linear.curves",
+    "Crossing": "undula.analysis.linear.results",
     "CurvatureTable": "undula.models.natural_curvature",
     "Equilibrium": "undula.analysis.states.records",
+    "Fact": "undula.analysis.record",
     "Filament": "undula.models.filament",
     "Flapping": "undula.analysis.states.records",
+    "GrowthCurve": "undula.analysis.linear.curves",
     "InputError": "undula.errors",
     "LinearLoad": "undula.models.loads.analytic",
     "Load": "undula.models.loads.analytic",
+    "Lyapunov": "undula.analysis.regimes.lyapunov",
+    "Model": "undula.models.model",
+    "NotFollowed": "undula.analysis.regimes.lyapunov",
+    "NotFound": "undula.analysis.states.not_found",
+    "Onset": "undula.analysis.linear.results",
     "Periodic": "undula.analysis.states.periodic_record",
     "PointLoad": "undula.models.loads.analytic",
     "PowerLoad": "undula.models.loads.power",
     "ProfileLoad": "undula.models.loads.user_density",
+    "Progress": "undula.analysis.runs.integrate",
+    "Ramp": "undula.analysis.ramps.ramp",
+    "RampResult": "undula.analysis.ramps.quasi_static",
+    "Range": "undula.analysis.observables.shapes",
+    "Record": "undula.analysis.record",
     "Run": "undula.analysis.runs.run",
     "Scales": "undula.models.scales",
+    "SearchStatus": "undula.analysis.states.not_found",
+    "Sensitivities": "undula.analysis.sensitivity.sensitivities",
+    "Spectrum": "undula.analysis.linear.results",
     "Spinning": "undula.analysis.states.records",
+    "State": "undula.analysis.states.state",
     "StoredWarning": "undula.storage.unchecked",
     "TableLoad": "undula.models.loads.user_density",
+    "Threshold": "undula.analysis.solvers.threshold_record",
+    "ThresholdCurve": "undula.analysis.solvers.threshold_record",
     "TipLoad": "undula.models.loads.analytic",
+    "Units": "undula.models.units",
+    "Verdict": "undula.analysis.regimes.verdict",
     "basins": "undula.analysis.maps.basins",
-    "criticality": "undula.analysis.solvers.criticality",
-    "extrapolate": "undula.analysis.solvers.state_kinds",
-    "critical_curve": "undula.analysis.linear.stability",
-    "onset": "undula.analysis.linear.stability",
-    "dataset_of": "undula.analysis.runs.dataset",
     "contradictions": "undula.analysis.maps.contradictions",
+    "critical_curve": "undula.analysis.linear.stability",
+    "criticality": "undula.analysis.solvers.criticality",
+    "dataset_of": "undula.analysis.runs.dataset",
+    "extrapolate": "undula.analysis.solvers.state_kinds",
+    "find": "undula.analysis.solvers.find",
     "find_equilibrium": "undula.analysis.solvers.equilibrium",
     "find_flapping": "undula.analysis.solvers.flapping",
     "find_periodic": "undula.analysis.solvers.periodic_search",
@@ -88,17 +133,22 @@ _MODULE_OF = {
     "helix": "undula.models.initial_states",
     "integrate": "undula.analysis.runs.integrate",
     "kicked": "undula.models.initial_states",
-    "load_result": "undula.storage.run_file",
+    "load": "undula.sweeps.load",
     "load_ramp": "undula.storage.ramp_file",
+    "load_result": "undula.storage.run_file",
     "load_sweep": "undula.sweeps.store",
     "lyapunov": "undula.analysis.regimes.lyapunov",
     "mode": "undula.models.initial_states",
+    "onset": "undula.analysis.linear.stability",
     "planar": "undula.models.initial_states",
-    "stability_boundaries": "undula.analysis.maps.stability_boundaries",
-    "stability_along_force": "undula.analysis.maps.stability_along_force",
+    "ramp": "undula.analysis.ramps.quasi_static",
+    "sensitivities": "undula.analysis.sensitivity.sensitivities",
     "spectrum": "undula.analysis.linear.spectrum",
+    "stability_along_force": "undula.analysis.maps.stability_along_force",
+    "stability_boundaries": "undula.analysis.maps.stability_boundaries",
     "straight": "undula.models.initial_states",
-    "threshold": "undula.analysis.solvers.thresholds",
+    "sweep": "undula.sweeps.from_python",
+    "threshold": "undula.analysis.solvers.find_threshold",
     "threshold_curve": "undula.analysis.solvers.thresholds",
 }
 
@@ -106,30 +156,57 @@ _SUBMODULES = {"observables": "undula.analysis.observables.shapes", "views": "un
 
 __all__ = [
     "BeadLoad",
+    "Bifurcation",
+    "Bifurcations",
+    "Branch",
     "Chain",
+    "Converged",
+    "CriticalCurve",
+    "Crossing",
     "CurvatureTable",
     "Equilibrium",
+    "Fact",
     "Filament",
     "Flapping",
+    "GrowthCurve",
     "InputError",
     "LinearLoad",
     "Load",
+    "Lyapunov",
+    "Model",
+    "NotFollowed",
+    "NotFound",
+    "Onset",
     "Periodic",
     "PointLoad",
     "PowerLoad",
     "ProfileLoad",
+    "Progress",
+    "Ramp",
+    "RampResult",
+    "Range",
+    "Record",
     "Run",
     "Scales",
+    "SearchStatus",
+    "Sensitivities",
+    "Spectrum",
     "Spinning",
+    "State",
     "StoredWarning",
     "TableLoad",
+    "Threshold",
+    "ThresholdCurve",
     "TipLoad",
+    "Units",
+    "Verdict",
     "basins",
     "contradictions",
     "critical_curve",
     "criticality",
     "dataset_of",
     "extrapolate",
+    "find",
     "find_equilibrium",
     "find_flapping",
     "find_periodic",
@@ -142,6 +219,7 @@ __all__ = [
     "helix",
     "integrate",
     "kicked",
+    "load",
     "load_ramp",
     "load_result",
     "load_sweep",
@@ -150,10 +228,13 @@ __all__ = [
     "observables",
     "onset",
     "planar",
+    "ramp",
+    "sensitivities",
     "spectrum",
     "stability_along_force",
     "stability_boundaries",
     "straight",
+    "sweep",
     "threshold",
     "threshold_curve",
     "views",

@@ -86,7 +86,8 @@ def kernel_digest() -> str:
     digest = hashlib.sha256()
     for path, content in sorted(_sources()):
         package, below, _ = path.partition("/")
-        if not below or package in COMPILED_PACKAGES or _JIT_IMPORT in content:
+        is_shared = not below and package != "__init__.py"
+        if is_shared or package in COMPILED_PACKAGES or _JIT_IMPORT in content:
             digest.update(path.encode())
             digest.update(content)
     return digest.hexdigest()
