@@ -245,7 +245,7 @@ def tell_diagram(count: int, way: Way) -> None:
             _seconds(*UNDULA, *command)
             for command in (("sweep", str(file), "--out", store), ("plot", store))
         )
-        records = un.load_sweep(Path(store))
+        records = un.load(Path(store))
         core = float(records["seconds"].sum())
     told = "" if side == 100 else " (asked are 100 x 100)"
     print(f"diagram of {side} x {side} points{told} on {os.cpu_count()} cores")

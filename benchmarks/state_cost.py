@@ -42,10 +42,10 @@ def main() -> None:
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for segments in (20, 40, 80):
         at = {force: un.Filament(segments, un.TipLoad(force)) for force in (40.0, 75.0, 185.0)}
-        spinning, flapping = un.find_spinning(at[40.0]), un.find_flapping(at[40.0])
+        spinning, flapping = un.find(at[40.0], "spinning"), un.find(at[40.0], "flapping")
         times = [
-            median(lambda model=at[75.0]: un.find_spinning(model)),
-            median(lambda model=at[75.0]: un.find_flapping(model)),
+            median(lambda model=at[75.0]: un.find(model, "spinning")),
+            median(lambda model=at[75.0]: un.find(model, "flapping")),
             median(lambda state=spinning: un.follow(state, "load.force", 300.0), 1),
             median(lambda state=flapping: un.follow(state, "load.force", 300.0), 1),
             median(lambda model=at[75.0]: settle(model)),

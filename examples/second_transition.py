@@ -24,8 +24,8 @@ SEGMENTS = 20
 def main(figure: str = "second_transition.png") -> None:
     """Follow the three branches, tell where they change stability, and draw them."""
     model = un.Filament(SEGMENTS, un.TipLoad(60.0))
-    spinning = un.follow(un.find_spinning(model), "load.force", 230.0)
-    flapping = un.follow(un.find_flapping(model), "load.force", 230.0)
+    spinning = un.follow(un.find(model, "spinning"), "load.force", 230.0)
+    flapping = un.follow(un.find(model, "flapping"), "load.force", 230.0)
     (lost,) = (one for one in spinning.bifurcations if one.loses)
     (gained,) = (one for one in flapping.bifurcations if one.gains)
     between = un.follow_from_bifurcation(gained, 1.02 * lost.value)

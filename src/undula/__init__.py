@@ -1,7 +1,7 @@
 """undula: elastic microfilaments in viscous fluid under axial follower forces.
 
 Build a model (`Filament` or `Chain`, with a load), choose an initial state, and `integrate` it; or
-solve for its states directly with `find_spinning` and `find_flapping`. See docs/index.md.
+solve for its states directly with `find`. See docs/index.md.
 
 Each name is imported at its first use, so that the command line starts quickly.
 """
@@ -33,16 +33,10 @@ if TYPE_CHECKING:
     from undula.analysis.sensitivity.sensitivities import Sensitivities, sensitivities
     from undula.analysis.solvers.branches import follow, follow_from_onset
     from undula.analysis.solvers.criticality import criticality
-    from undula.analysis.solvers.equilibrium import find_equilibrium
     from undula.analysis.solvers.find import find
     from undula.analysis.solvers.find_threshold import threshold
-    from undula.analysis.solvers.flapping import find_flapping
     from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
-    from undula.analysis.solvers.periodic_search import find_periodic
-    from undula.analysis.solvers.spinning import find_spinning
-    from undula.analysis.solvers.state_kinds import extrapolate
     from undula.analysis.solvers.threshold_record import Threshold, ThresholdCurve
-    from undula.analysis.solvers.thresholds import threshold_curve
     from undula.analysis.states.branch import Bifurcation, Bifurcations, Branch
     from undula.analysis.states.extrapolation import Converged
     from undula.analysis.states.not_found import NotFound, SearchStatus
@@ -61,12 +55,9 @@ if TYPE_CHECKING:
     from undula.models.natural_curvature import CurvatureTable
     from undula.models.scales import Scales
     from undula.models.units import Units
-    from undula.storage.ramp_file import load_ramp
-    from undula.storage.run_file import load_result
     from undula.storage.unchecked import StoredWarning
     from undula.sweeps.from_python import sweep
     from undula.sweeps.load import load
-    from undula.sweeps.store import load_sweep
 
 _MODULE_OF = {
     "BeadLoad": "undula.models.loads.beads",
@@ -119,12 +110,7 @@ _MODULE_OF = {
     "critical_curve": "undula.analysis.linear.stability",
     "criticality": "undula.analysis.solvers.criticality",
     "dataset_of": "undula.analysis.runs.dataset",
-    "extrapolate": "undula.analysis.solvers.state_kinds",
     "find": "undula.analysis.solvers.find",
-    "find_equilibrium": "undula.analysis.solvers.equilibrium",
-    "find_flapping": "undula.analysis.solvers.flapping",
-    "find_periodic": "undula.analysis.solvers.periodic_search",
-    "find_spinning": "undula.analysis.solvers.spinning",
     "follow": "undula.analysis.solvers.branches",
     "follow_from_bifurcation": "undula.analysis.solvers.periodic_orbits",
     "follow_from_onset": "undula.analysis.solvers.branches",
@@ -134,9 +120,6 @@ _MODULE_OF = {
     "integrate": "undula.analysis.runs.integrate",
     "kicked": "undula.models.initial_states",
     "load": "undula.sweeps.load",
-    "load_ramp": "undula.storage.ramp_file",
-    "load_result": "undula.storage.run_file",
-    "load_sweep": "undula.sweeps.store",
     "lyapunov": "undula.analysis.regimes.lyapunov",
     "mode": "undula.models.initial_states",
     "onset": "undula.analysis.linear.stability",
@@ -149,7 +132,6 @@ _MODULE_OF = {
     "straight": "undula.models.initial_states",
     "sweep": "undula.sweeps.from_python",
     "threshold": "undula.analysis.solvers.find_threshold",
-    "threshold_curve": "undula.analysis.solvers.thresholds",
 }
 
 _SUBMODULES = {"observables": "undula.analysis.observables.shapes", "views": "undula.views"}
@@ -205,12 +187,7 @@ __all__ = [
     "critical_curve",
     "criticality",
     "dataset_of",
-    "extrapolate",
     "find",
-    "find_equilibrium",
-    "find_flapping",
-    "find_periodic",
-    "find_spinning",
     "follow",
     "follow_from_bifurcation",
     "follow_from_onset",
@@ -220,9 +197,6 @@ __all__ = [
     "integrate",
     "kicked",
     "load",
-    "load_ramp",
-    "load_result",
-    "load_sweep",
     "lyapunov",
     "mode",
     "observables",
@@ -236,7 +210,6 @@ __all__ = [
     "straight",
     "sweep",
     "threshold",
-    "threshold_curve",
     "views",
 ]
 
@@ -244,14 +217,31 @@ __all__ = [
 #: Names of the previous version and their new names; the next version drops them.
 _RENAMED = {
     "births": "criticality",
-    "converged": "extrapolate",
     "critical_force": "onset",
     "disagreements": "contradictions",
     "follow_born": "follow_from_bifurcation",
-    "load_steps": "load_ramp",
-    "load_study": "load_sweep",
+    "load_steps": "load",
+    "load_study": "load",
     "solved_borders": "stability_boundaries",
     "solved_line": "stability_along_force",
+}
+
+
+#: Functions of the previous version with their modules, and calls of new ones in place of theirs;
+#: the next version drops them.
+_FORMER = {
+    "find_spinning": ("undula.analysis.solvers.spinning", 'find(model, "spinning")'),
+    "find_flapping": ("undula.analysis.solvers.flapping", 'find(model, "flapping")'),
+    "find_equilibrium": ("undula.analysis.solvers.equilibrium", 'find(model, "equilibrium")'),
+    "find_periodic": ("undula.analysis.solvers.periodic_search", 'find(model, "periodic")'),
+    "threshold_curve": (
+        "undula.analysis.solvers.thresholds",
+        "threshold(model, kind, along=(parameter, values))",
+    ),
+    "extrapolate": ("undula.analysis.solvers.state_kinds", "find(model, kind, converged=True)"),
+    "load_result": ("undula.storage.run_file", "load(path)"),
+    "load_ramp": ("undula.storage.ramp_file", "load(path)"),
+    "load_sweep": ("undula.sweeps.store", "load(path)"),
 }
 
 
@@ -261,6 +251,11 @@ def __getattr__(name: str) -> Any:
         message = f"undula.{name} is now undula.{new}; the old name goes with the next release"
         warnings.warn(message, DeprecationWarning, stacklevel=2)
         return __getattr__(new)
+    if name in _FORMER:
+        module, call = _FORMER[name]
+        message = f"undula.{name} is now undula.{call}; the old name goes with the next release"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return getattr(import_module(module), name)
     if name in _SUBMODULES:
         return import_module(_SUBMODULES[name])
     if name not in _MODULE_OF:

@@ -78,7 +78,7 @@ def test_the_links_of_a_chain_are_its_body() -> None:
 
 
 def test_the_error_on_the_links_is_that_of_the_solver() -> None:
-    spinning, flapping = un.find_spinning(THREE), un.find_flapping(THREE)
+    spinning, flapping = un.find(THREE, "spinning"), un.find(THREE, "flapping")
     assert 0.0 < spinning.solver_error < 1e-10
     assert flapping.solver_error == flapping.time_error
 

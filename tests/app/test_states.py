@@ -38,8 +38,8 @@ pytestmark = pytest.mark.usefixtures("own_folder")
 @pytest.fixture(scope="module", autouse=True)
 def _compiled() -> None:
     """Have the kernels compiled before anyone listens to what is said on standard error."""
-    assert un.find_spinning(EIGHT)
-    assert un.find_flapping(EIGHT)
+    assert un.find(EIGHT, "spinning")
+    assert un.find(EIGHT, "flapping")
 
 
 def refused(asked: Asked) -> str:
@@ -57,7 +57,7 @@ def refused(asked: Asked) -> str:
 
 def test_spinning_is_answered_with_what_python_computes(ask: Ask) -> None:
     found = answer(ask("find", "spinning", *FEW, "--json"))
-    state = un.find_spinning(EIGHT)
+    state = un.find(EIGHT, "spinning")
     assert isinstance(state, Spinning)
     assert found.keys() == STATE | {"trivial_rate"}
     assert (found["status"], found["kind"], found["links"]) == ("done", "spinning", 8)
@@ -74,7 +74,7 @@ def test_spinning_is_answered_with_what_python_computes(ask: Ask) -> None:
 
 def test_flapping_is_answered_with_what_python_computes(ask: Ask) -> None:
     found = answer(ask("find", "flapping", *FEW, "--json"))
-    state = un.find_flapping(EIGHT)
+    state = un.find(EIGHT, "flapping")
     assert isinstance(state, Flapping)
     assert found.keys() == STATE | {
         *("leading_rate_in_plane", "leading_rate_out_of_plane"),
@@ -120,7 +120,7 @@ def test_a_converged_state_has_the_keys_of_a_single_one_and_its_errors(ask: Ask)
     links = spinning["links"]
     assert links[:3] == [6, 12, 24]
     assert spinning["error"] == spinning["errors"]["frequency"]
-    states = [un.find_spinning(EIGHT.with_(segments=count)) for count in links]
+    states = [un.find(EIGHT.with_(segments=count), "spinning") for count in links]
     for key in ("frequency", "bending_energy", "tip_radius", "tip_height", "leading_rate"):
         limit, error = extrapolated([quantities_of(state)[key] for state in states])
         # Newton's method ends at round-off wherever it begins; rates have ten digits left.

@@ -179,10 +179,10 @@ def test_what_is_no_force_has_no_other_units_beside_it(ask: Ask) -> None:
 
 def test_two_links_are_straight_at_four_per_length_of_chain_and_spin_at_four_per_link() -> None:
     # Ling, Guo & Kanso (2018) show them spinning at F = 4 and name the unit K/L.
-    assert isinstance(un.find_spinning(TWO.with_(load=un.TipLoad(4.0))), NotFound)
+    assert isinstance(un.find(TWO.with_(load=un.TipLoad(4.0)), "spinning"), NotFound)
     assert max(un.spectrum(TWO.with_(load=un.TipLoad(4.0))).rates) < 0.0
     assert TWO.units.force_in(8.0)["K/l"] == 4.0
-    spinning = un.find_spinning(TWO)
+    spinning = un.find(TWO, "spinning")
     assert isinstance(spinning, Spinning)
     assert spinning.stable
 
@@ -260,7 +260,7 @@ def words_of(figure: Figure) -> str:
 
 
 def branch(model: Any) -> Branch[Spinning]:
-    state = un.find_spinning(model)
+    state = un.find(model, "spinning")
     assert isinstance(state, Spinning)
     return Branch("load.force", np.array([state.force]), (state,), (), complete=True)
 

@@ -192,7 +192,7 @@ def test_it_has_the_filaments_spectrum_and_onset(load: DensityLoad) -> None:
 
 def test_it_spins_like_the_filament() -> None:
     filament, other = twins(TipLoad(75.0), 12)
-    state, of_links = un.find_spinning(filament), un.find_spinning(other)
+    state, of_links = un.find(filament, "spinning"), un.find(other, "spinning")
     assert isinstance(state, un.Spinning)
     assert isinstance(of_links, un.Spinning)
     # Newton's method ends at round-off on either side.

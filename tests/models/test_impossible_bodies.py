@@ -83,7 +83,7 @@ def test_links_that_the_load_pushes_to_nothing_are_refused(
         lambda: un.straight(soft),
         lambda: begin(soft, un.planar(soft)),
         lambda: un.integrate(soft, un.mode(soft)),
-        lambda: un.find_flapping(soft),
+        lambda: un.find(soft, "flapping"),
     ):
         told = complaint(act)
         assert "tensile_stiffness" in told
@@ -216,7 +216,7 @@ def test_a_start_file_without_samples_is_refused(tmp_path: Path) -> None:
 
     small = ["--set", "model.segments=8", "--set", "time.until=0.01", "--set", "time.samples=10"]
     assert main(["run", *small, "--no-movie", "--out", str(tmp_path / "r")]) == 0
-    empty = un.load_result(tmp_path / "r" / "run.nc").isel(time=slice(0, 0))
+    empty = un.load(tmp_path / "r" / "run.nc").isel(time=slice(0, 0))
     empty.to_netcdf(tmp_path / "none.nc", engine="h5netcdf")
     words = [*small, "--set", "start.shape=state", "--set", f"start.file={tmp_path / 'none.nc'}"]
     assert main(["run", *words, "--no-movie", "--out", str(tmp_path / "s")]) == 2

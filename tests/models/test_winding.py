@@ -286,7 +286,7 @@ def test_a_run_that_is_taken_up_goes_on_with_its_springs_wound() -> None:
 
 @cache
 def beat(force: float) -> Flapping:
-    state = un.find_flapping(two(8.0))
+    state = un.find(two(8.0), "flapping")
     assert isinstance(state, Flapping)
     if force == 8.0:
         return state
@@ -294,7 +294,7 @@ def beat(force: float) -> Flapping:
 
 
 def test_below_pi_the_beat_is_that_of_either_spring() -> None:
-    folding, winding = un.find_flapping(two(8.0, "angle")), beat(8.0)
+    folding, winding = un.find(two(8.0, "angle"), "flapping"), beat(8.0)
     assert isinstance(folding, Flapping)
     # Their steps in time begin at other places of the beat.
     error = winding.time_error + folding.time_error
@@ -323,7 +323,7 @@ def test_a_beat_is_found_again_from_where_its_springs_are_wound() -> None:
     psi = np.abs(state.model.joint_angles(state.unknowns)).max(axis=1)
     shifted = np.roll(state.unknowns, -1 - int(psi.argmax()), axis=0)
     assert np.abs(state.model.joint_angles(shifted[-1])).max() > np.pi
-    again = un.find_flapping(state.model, dataclasses.replace(state, unknowns=shifted))
+    again = un.find(state.model, "flapping", guess=dataclasses.replace(state, unknowns=shifted))
     assert isinstance(again, Flapping)
     # Other places of the steps in time along the beat.
     assert again.frequency == pytest.approx(state.frequency, rel=max(1e-5, *state.trivial))

@@ -18,7 +18,7 @@ def plain(links: int, force: float = 1.0) -> Chain:
 
 
 def flapping(model: Chain) -> un.Flapping:
-    found = un.find_flapping(model)
+    found = un.find(model, "flapping")
     assert isinstance(found, un.Flapping)
     return found
 
@@ -189,6 +189,6 @@ def test_beyond_spinning_the_upper_links_windmill_about_a_level_axis(
 
 def test_beyond_the_fold_no_beat_is_made_up() -> None:
     # From 20 K/L on two links windmill, of which half a turn may close on something in 32 steps.
-    found = [un.find_flapping(Chain(2, TipLoad(force))) for force in (20.0, 21.0)]
+    found = [un.find(Chain(2, TipLoad(force)), "flapping") for force in (20.0, 21.0)]
     assert all(isinstance(one, NotFound) for one in found)
     assert all("does not beat (windmilling)" in one.reason for one in found)

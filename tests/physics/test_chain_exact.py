@@ -236,7 +236,7 @@ def test_the_methods_of_the_continuum_are_refused(method: Method) -> None:
 
 def test_the_links_of_a_chain_have_no_limit() -> None:
     for ask in (
-        lambda: un.extrapolate(chain_of(3).with_(force=8.0), "spinning"),
+        lambda: un.find(chain_of(3).with_(force=8.0), "spinning", converged=True),
         lambda: un.threshold(chain_of(3), "spinning-lost", converged=True),
     ):
         assert "links of this model are its body" in complaint(ask)
@@ -253,5 +253,5 @@ def test_one_link_has_no_threshold_and_says_so(option: str) -> None:
         told = un.threshold(model, kind)
         assert told.value is None
         assert told.reason == str(un.onset(model, later=0))
-    assert not un.find_spinning(model)
+    assert not un.find(model, "spinning")
     assert not un.follow_from_onset(model, "flapping", 10.0)

@@ -23,7 +23,7 @@ def plain(links: int, force: float = 1.0) -> Chain:
 
 
 def spinning(model: Chain) -> un.Spinning:
-    found = un.find_spinning(model)
+    found = un.find(model, "spinning")
     assert isinstance(found, un.Spinning)
     return found
 
@@ -248,7 +248,7 @@ def test_a_run_spins_at_the_frequency_solved_for(links: int, force: float) -> No
 
 
 def test_many_links_spin_to_second_order_like_a_filament_longer_by_one() -> None:
-    limit = un.extrapolate(Filament(20, TipLoad(75.0), drag_ratio=1.0), "spinning").values
+    limit = un.find(Filament(20, TipLoad(75.0), drag_ratio=1.0), "spinning", converged=True).values
     links, errors = np.array([10, 20, 40]), []
     for n in links:
         stretch = 1.0 + 1.0 / n

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from commands import unknown_keys
-from undula.schema.answer_keys import ANSWERS, PARAMETER, Named
+from undula.schema.answer_keys import ANSWERS
+from undula.schema.key_kinds import PARAMETER, Named
 
 DOCS = Path(__file__).parents[2] / "docs"
 #: Words in code spans of the pages.

@@ -123,7 +123,7 @@ def as_python_stores_it(run: Path) -> Path:
 
 
 def annotated(run: Path) -> Path:
-    un.load_result(run).assign_attrs(note="mine").to_netcdf(run.with_name("noted.nc"))
+    un.load(run).assign_attrs(note="mine").to_netcdf(run.with_name("noted.nc"))
     return run.with_name("noted.nc")
 
 
@@ -139,14 +139,14 @@ def test_what_other_software_stored_is_read_drawn_and_said_to_be_unchecked(
 ) -> None:
     path = store_it(run)
     with pytest.warns(StoredWarning, match=f"{path} carries no checksum"):
-        stored = un.load_result(path)
+        stored = un.load(path)
     assert main(["plot", str(path)]) == 0
     said = capsys.readouterr().err
     assert said.count("carries no checksum") == said.count("\n") == 1
     # And again, as often as anyone likes.
     stored.to_netcdf(path.with_name("again.nc"))
     with pytest.warns(StoredWarning):
-        xr.testing.assert_identical(un.load_result(path.with_name("again.nc")), stored)
+        xr.testing.assert_identical(un.load(path.with_name("again.nc")), stored)
 
 
 @pytest.mark.filterwarnings("ignore:.*carries no checksum")
@@ -200,7 +200,7 @@ def test_a_file_without_checksum_that_was_cut_or_grew_is_refused(run: Path) -> N
     image = annotated_in_place(run).read_bytes()
     for broken in (image[:-1], image + b"\0", image[: len(image) // 2]):
         run.write_bytes(broken)
-        assert "is cut short or damaged" in complaint(lambda: un.load_result(run))
+        assert "is cut short or damaged" in complaint(lambda: un.load(run))
 
 
 # ---------------------------------------------------------------- studies
@@ -326,9 +326,9 @@ def test_a_study_that_python_stored_again_is_read_and_drawn_but_not_gone_on_with
 @pytest.mark.filterwarnings("ignore:.*carries no checksum", "ignore:Consolidated metadata")
 @pytest.mark.filterwarnings("ignore:.*does not have a Zarr V3")
 def test_a_run_that_python_stored_again_as_zarr_is_read(run: Path) -> None:
-    whole = un.load_result(run)
+    whole = un.load(run)
     whole.to_zarr(run.with_name("run.zarr"))
-    xr.testing.assert_equal(un.load_result(run.with_name("run.zarr")), whole)
+    xr.testing.assert_equal(un.load(run.with_name("run.zarr")), whole)
 
 
 def test_a_store_of_ours_in_the_third_format_with_a_strange_codec_is_refused(

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from undula.schema.answer_keys import PARAMETER, Named
+from undula.schema.key_kinds import PARAMETER, Named
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))
 UNDULA = SCRIPTS / "undula"

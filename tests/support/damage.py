@@ -153,7 +153,7 @@ def annotate(folder: Path) -> None:
 
 
 def read_run(folder: Path) -> Any:
-    return as_bytes(un.load_result(folder / "run.nc"))
+    return as_bytes(un.load(folder / "run.nc"))
 
 
 def drawn(folder: Path) -> Any:
@@ -173,7 +173,7 @@ def make_steps(folder: Path) -> None:
 
 
 def read_steps(folder: Path) -> Any:
-    stored = un.load_ramp(folder / "steps.nc")
+    stored = un.load(folder / "steps.nc")
     return as_bytes(stored), len(stored_steps(stored))
 
 
@@ -197,7 +197,7 @@ def gone_on_with(folder: Path, keep: str = "period") -> Any:
     store = open_sweep(folder / "s.zarr", sweep(folder, keep))
     work_off(SweepWork(store), store.sweep)
     runs = {path.name: path.read_bytes() for path in (store.path / "runs").glob("*.nc")}
-    after = un.load_sweep(store.path).load()
+    after = un.load(store.path).load()
     done = (before["status"] == 1).values
     names = [name for name in after if after[name].dims[:2] == before["status"].dims]
     shown = [
@@ -215,7 +215,7 @@ def gone_on_with(folder: Path, keep: str = "period") -> Any:
 
 
 def read_sweep(folder: Path) -> xr.Dataset:
-    return un.load_sweep(folder / "s.zarr").load()
+    return un.load(folder / "s.zarr").load()
 
 
 def gone_on_with_runs(folder: Path) -> Any:

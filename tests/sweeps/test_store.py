@@ -102,7 +102,7 @@ def test_the_last_period_is_kept_where_it_is_asked_for(tmp_path: Path) -> None:
 def test_whole_runs_are_files_that_every_command_reads(tmp_path: Path) -> None:
     text = QUICK + '[study]\nkeep = "run"\n' + AXES.replace("count = 5", "count = 2")
     stored = done(sweep_of(tmp_path, text), tmp_path / "s.zarr")
-    run = un.load_result(tmp_path / "s.zarr" / "runs" / "1-0-0.nc")
+    run = un.load(tmp_path / "s.zarr" / "runs" / "1-0-0.nc")
     assert json.loads(run.attrs["input"])["load"] == {
         "profile": "power",
         "force": 20.0,

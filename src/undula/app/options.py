@@ -58,6 +58,10 @@ Plot = Annotated[
 Converge = Annotated[
     bool, typer.Option("--converge", help="Extrapolate to many links, with the error.")
 ]
+Derivatives = Annotated[
+    bool,
+    typer.Option("--sensitivities", help="Add the derivatives by every parameter of the model."),
+]
 WithLyapunov = Annotated[
     bool,
     typer.Option("--lyapunov", help="Compute Lyapunov exponents, of a regular motion as well."),

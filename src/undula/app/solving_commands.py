@@ -11,6 +11,7 @@ import typer
 from undula.app.options import (
     Changes,
     Converge,
+    Derivatives,
     EndOfSearch,
     FollowedKind,
     Input,
@@ -95,6 +96,7 @@ def find(
         int | None,
         typer.Option(min=0, help="Of periodic: the seed of the run that is made without --run."),
     ] = None,
+    sensitivities: Derivatives = False,
     as_json: Json = False,
 ) -> int:
     """Solve for a state of a kind and report its stability.
@@ -109,7 +111,7 @@ def find(
 
     start = start_of_search(kind, file, changes or (), run, seed)
     with compilation_announced(notice):
-        answer = find_state(start, kind, converge=converge)
+        answer = find_state(start, kind, converge=converge, derivatives=sensitivities)
     reply(answer.answer, answer.text, as_json=as_json)
     return DONE
 
@@ -161,6 +163,7 @@ def threshold(
     converge: Converge = False,
     up_to: EndOfSearch = None,
     plot: Plot = None,
+    sensitivities: Derivatives = False,
     overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> int:
@@ -180,8 +183,12 @@ def threshold(
             raise InputError("--plot draws a curve; give --along as well")
         title = wanted.describe({FORCE})
         with compilation_announced(notice):
-            answer = answer_threshold(model, name, converge=converge, up_to=end, title=title)
+            answer = answer_threshold(
+                model, name, converge=converge, up_to=end, title=title, derivatives=sensitivities
+            )
         return _reply(answer, None, as_json=as_json)
+    if sensitivities:
+        raise InputError("--sensitivities is of one threshold; leave out --along")
     axis = parse_axis("--along", along)
     with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
         title = wanted.describe({FORCE, axis[0]})

@@ -6,50 +6,25 @@ no other keys, and need not hold all of them; docs/output.md states their meanin
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
 
-#: Without a unit: words, numbers of things, ratios, angles in radians, and mixed lists.
-UNITLESS = "unitless"
-#: Quantities with a unit.
-LENGTH, TIME, FREQUENCY, RATE = "length", "time", "frequency", "rate"
-FORCE, ENERGY = "force", "energy"
+from undula.schema.key_kinds import (
+    ENERGY,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    PARAMETER,
+    RATE,
+    TIME,
+    UNITLESS,
+    Keys,
+    Named,
+    plain,
+    range_of,
+    with_error,
+)
 
-
-@dataclass(frozen=True)
-class Named:
-    """An object whose keys are names that the input or the outcome gives, as verdicts.
-
-    Attributes
-    ----------
-    values
-        Quantity or keys of each of its values.
-    """
-
-    values: Any
-
-
-#: The keys of an object by their names.
-Keys = Mapping[str, Any]
-#: The key under which an object holds the value of a parameter: the parameter's own name.
-PARAMETER = "<parameter>"
-
-
-def plain(*names: str) -> Keys:
-    """Return keys without a unit."""
-    return dict.fromkeys(names, UNITLESS)
-
-
-def with_error(name: str, quantity: str) -> Keys:
-    """Return the keys of a number and of its error."""
-    return {name: quantity, f"{name}_error": quantity}
-
-
-def range_of(quantity: str) -> Keys:
-    """Return the keys of the range of a quantity."""
-    return dict.fromkeys(("min", "max", "mean"), quantity)
-
-
+#: Derivatives, by parameter and quantity.
+_SENSITIVITIES = Named(Named(UNITLESS))
 #: A force in the further units of a chain.
 _FURTHER = Named(FORCE)
 _NAMES = plain("length", "force", "energy", "power", "time", "frequency")
@@ -174,6 +149,7 @@ FIND: Keys = {
     "trivial_rate": RATE,
     **plain("trivial_multiplier_error"),
     "errors": Named(UNITLESS),
+    "sensitivities": _SENSITIVITIES,
 }
 FOLLOW: Keys = {
     **EVERY,
@@ -207,6 +183,7 @@ _THRESHOLD: Keys = {
 THRESHOLD: Keys = {
     **EVERY,
     **_THRESHOLD,
+    "sensitivities": _SENSITIVITIES,
     **plain("parameter", "figure"),
     "units": _NAMES,
     "thresholds": {PARAMETER: UNITLESS, **_THRESHOLD},

@@ -123,7 +123,7 @@ def load_ramp(path: Path | str) -> xr.Dataset:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder) / "steps.nc"
     ...     write_ramp(file, Series({}, "tip force", model, values), steps)
-    ...     stored = un.load_ramp(file)
+    ...     stored = un.load(file)
     >>> stored["value"].values
     array([1., 2.])
     """

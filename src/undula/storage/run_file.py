@@ -148,7 +148,7 @@ def load_result(path: Path | str) -> xr.Dataset:
     >>> run = un.integrate(model, un.planar(model, 0.1), until=0.001, samples=3)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_run(Path(folder) / "run.nc", un.dataset_of(run), checkpoint={})
-    ...     stored = un.load_result(Path(folder) / "run.nc")
+    ...     stored = un.load(Path(folder) / "run.nc")
     >>> stored["nodes"].dims
     ('time', 'node', 'axis')
     """

@@ -272,7 +272,7 @@ def load_sweep(path: Path | str, *, shapes: bool = True) -> xr.Dataset:
     Examples
     --------
     >>> import undula
-    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> stored = undula.load("results/point-loads.zarr")
     >>> stored["verdict"].sel({"load.force": 75.0}).dims
     ('load.position', 'try')
     """

@@ -167,8 +167,8 @@ def test_where_starts_end_is_what_the_paper_says_except_where_two_states_are_sta
     assert found.sel({"load.force": 250.0, "verdict": "planar flapping"}) == 1.0
     # Between the forces at which flapping is gained and spinning is lost it depends on the start.
     model = un.Filament(20, un.TipLoad(177.0))
-    assert un.find_spinning(model).stable
-    assert un.find_flapping(model).stable
+    assert un.find(model, "spinning").stable
+    assert un.find(model, "flapping").stable
     both = found.sel({"load.force": 177.0, "verdict": ["spinning", "planar flapping"]})
     assert (both > 0.0).all()
     assert both.sum() == 1.0

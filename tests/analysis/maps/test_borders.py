@@ -19,6 +19,8 @@ from undula.analysis.maps.stability_boundaries import (
     stability_boundaries,
 )
 from undula.analysis.maps.stability_intervals import StabilityIntervals, straight_intervals
+from undula.analysis.solvers.flapping import find_flapping
+from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.thresholds import single_threshold
 from undula.analysis.states.extrapolation import extrapolated
 from undula.analysis.states.records import Flapping, Spinning
@@ -26,7 +28,7 @@ from undula.sweeps.boundary_cache import NAME, read_boundaries, write_boundaries
 
 EIGHT = un.Filament(segments=8, load=un.TipLoad(75.0))
 LOW = un.Filament(segments=8, load=un.PointLoad(75.0, position=0.4))
-FINDS = {"spinning": un.find_spinning, "flapping": un.find_flapping}
+FINDS = {"spinning": find_spinning, "flapping": find_flapping}
 
 
 @cache
@@ -102,10 +104,10 @@ def test_a_branch_born_downwards_has_a_fold_below_the_onset() -> None:
     # Beyond the fold there is a stable state; short of it there is none.
     assert state.is_stable_at(1.01 * fold)
     assert not state.is_stable_at(0.99 * fold)
-    beyond = un.find_spinning(LOW.with_(force=1.01 * fold))
+    beyond = un.find(LOW.with_(force=1.01 * fold), "spinning")
     assert isinstance(beyond, Spinning)
     assert beyond.stable
-    assert not un.find_spinning(LOW.with_(force=0.99 * fold))
+    assert not un.find(LOW.with_(force=0.99 * fold), "spinning")
 
 
 def test_values_without_a_border_are_gaps_with_reasons() -> None:

@@ -12,6 +12,8 @@ from refusal import complaint
 from undula.analysis.linear.spectrum import spectrum
 from undula.analysis.maps.stability_along_force import solved_record, stability_along_force
 from undula.analysis.maps.states_at_forces import states_along
+from undula.analysis.solvers.flapping import find_flapping
+from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.solvers.thresholds import single_threshold
 from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.records import Flapping, Spinning
@@ -33,7 +35,7 @@ def at(force: float) -> dict[str, Any]:
 
 @cache
 def found(kind: str, force: float) -> Spinning | Flapping | NotFound:
-    find: Callable[..., Any] = un.find_spinning if kind == "spinning" else un.find_flapping
+    find: Callable[..., Any] = find_spinning if kind == "spinning" else find_flapping
     return find(EIGHT.with_(force=force))
 
 

@@ -13,6 +13,8 @@ from undula.analysis.run_settings import Schedule
 from undula.analysis.runs.checkpoint import checkpoint, resume
 from undula.analysis.runs.integrate import carry_on
 from undula.analysis.runs.simulation import Simulation
+from undula.analysis.solvers.flapping import find_flapping
+from undula.analysis.solvers.spinning import find_spinning
 from undula.analysis.states.periodic_record import Periodic
 from undula.arrays import Array
 from undula.models.initial_states import leading_mode
@@ -35,9 +37,9 @@ def solved(model: Model) -> dict[str, un.Spinning | un.Flapping | None]:
     found: dict[str, un.Spinning | un.Flapping | None] = {}
     if leading_mode(model)[0].real < 0.0:
         found["straight"] = None
-    if model.dimension == 3 and (spinning := un.find_spinning(model)) and spinning.stable:
+    if model.dimension == 3 and (spinning := un.find(model, "spinning")) and spinning.stable:
         found["spinning"] = spinning
-    if (flapping := un.find_flapping(model)) and flapping.stable:
+    if (flapping := un.find(model, "flapping")) and flapping.stable:
         found["planar flapping"] = flapping
     return found
 
@@ -60,7 +62,7 @@ class Case:
     def begin(self) -> Array:
         if isinstance(self.start, int):
             return un.kicked(self.model, self.off, seed=self.start)
-        find = un.find_spinning if self.start == "spinning" else un.find_flapping
+        find = find_spinning if self.start == "spinning" else find_flapping
         state = find(self.model)
         nodes = state.nodes if state.nodes.ndim == 2 else state.nodes[0]
         x = self.model.from_nodes(nodes)
@@ -124,7 +126,7 @@ def test_a_run_that_still_leaves_an_unstable_state_is_not_named_wrongly(
     force: float, kind: str
 ) -> None:
     case = Case(tip(force), kind, 1e-3)
-    find = un.find_spinning if kind == "spinning" else un.find_flapping
+    find = find_spinning if kind == "spinning" else find_flapping
     state = find(case.model)
     left = {"spinning": "spinning", "flapping": "planar flapping"}[kind]
     right, seen = {left, *solved(case.model), "undecided"}, []
@@ -167,7 +169,7 @@ def test_beyond_planar_flapping_a_run_ends_in_a_stable_motion_that_goes_round(
 ) -> None:
     run = beyond(force)
     assert run.verdict.name == "modulated spinning"
-    state = un.find_periodic(run.model, run)
+    state = un.find(run.model, "periodic", guess=run)
     assert isinstance(state, Periodic)
     assert state.exponents[0].real < 0.0
     seen = run.verdict.evidence
@@ -183,8 +185,8 @@ def test_just_beyond_planar_flapping_a_run_ends_in_a_beat_that_is_in_no_plane() 
     # Flapping is lost at 316.17 in a symmetry breaking, which keeps the frequency.
     run = beyond(320.0)
     assert run.verdict.name == "non-planar flapping"
-    assert run.frequency.value == pytest.approx(un.find_flapping(run.model).frequency, rel=0.01)
-    assert not un.find_flapping(run.model).stable
+    assert run.frequency.value == pytest.approx(un.find(run.model, "flapping").frequency, rel=0.01)
+    assert not un.find(run.model, "flapping").stable
     found = lyapunov(run.model, run.model.from_nodes(run.motion.nodes[-1]), 0.5)
     assert found.beyond_symmetry < -3.0 * found.beyond_symmetry_error
 

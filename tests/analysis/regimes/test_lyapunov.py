@@ -52,7 +52,7 @@ def is_zero(found: Lyapunov, cycle: float) -> bool:
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-6, 1e-7])
 def test_a_spinning_filament_has_the_exponents_of_its_spectrum(rtol: float) -> None:
-    state = un.find_spinning(filament(75.0))
+    state = un.find(filament(75.0), "spinning")
     found = lyapunov(state.model, state.x, 100.0 / state.frequency, rtol=rtol)
     assert found.symmetries == 1
     assert is_zero(found, 1.0 / state.frequency)
@@ -62,7 +62,7 @@ def test_a_spinning_filament_has_the_exponents_of_its_spectrum(rtol: float) -> N
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-6])
 def test_a_planar_beat_has_the_exponents_of_its_multipliers(rtol: float) -> None:
-    beat = un.find_flapping(filament(250.0))
+    beat = un.find(filament(250.0), "flapping")
     x = beat.model.from_nodes(beat.nodes[0])
     found = lyapunov(beat.model, x, 200.0 * beat.period, rtol=rtol)
     assert found.symmetries == 2
@@ -72,7 +72,7 @@ def test_a_planar_beat_has_the_exponents_of_its_multipliers(rtol: float) -> None
 
 
 def test_a_beat_confined_to_its_plane_knows_of_disturbances_in_it_only() -> None:
-    beat = un.find_flapping(filament(75.0, confined=True))
+    beat = un.find(filament(75.0, confined=True), "flapping")
     x = beat.model.from_nodes(beat.nodes[0])
     found = lyapunov(beat.model, x, 200.0 * beat.period)
     assert found.exponents.size == 2
@@ -82,7 +82,7 @@ def test_a_beat_confined_to_its_plane_knows_of_disturbances_in_it_only() -> None
 
 
 def test_an_unstable_beat_has_a_positive_exponent_that_is_no_chaos() -> None:
-    beat = un.find_flapping(filament(120.0))
+    beat = un.find(filament(120.0), "flapping")
     x = beat.model.from_nodes(beat.nodes[0])
     found = lyapunov(beat.model, x, 100.0 * beat.period)
     # The motion stays in its plane exactly; that it is unstable its exponents tell all the same.
@@ -123,7 +123,7 @@ def test_the_exponent_of_chaos_depends_on_no_tolerance_and_no_seed() -> None:
 
 
 def test_a_chain_of_three_links_spins_with_the_exponents_of_its_spectrum() -> None:
-    state = un.find_spinning(un.Chain(3, un.TipLoad(20.0)))
+    state = un.find(un.Chain(3, un.TipLoad(20.0)), "spinning")
     found = lyapunov(state.model, state.x, 100.0 / state.frequency)
     assert found.symmetries == 1
     assert is_zero(found, 1.0 / state.frequency)
@@ -175,7 +175,7 @@ def test_nearby_runs_part_by_many_orders_and_no_farther_than_the_motion_is_large
 
 
 def test_runs_from_nearby_states_of_a_regular_motion_do_not_part() -> None:
-    beat = un.find_flapping(filament(250.0))
+    beat = un.find(filament(250.0), "flapping")
     x = beat.model.from_nodes(beat.nodes[0])
     pairs = finite_separation(beat.model, x, 20.0 * beat.period)
     assert pairs.saturated == 0
@@ -215,7 +215,7 @@ def test_a_run_answers_with_its_exponents_if_asked(
     told = answer(capsys, tmp_path, "load.force=75", "time.until=0.5")
     found = told["lyapunov"]
     assert abs(found["value"]) <= found["error"]
-    state = un.find_spinning(filament(75.0))
+    state = un.find(filament(75.0), "spinning")
     away = abs(found["beyond_symmetry"] - state.leading_rate)
     assert away <= ERRORS * found["beyond_symmetry_error"]
     assert found["finite_separation"]["error"] > 0.0

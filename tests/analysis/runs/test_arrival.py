@@ -38,7 +38,7 @@ def run_of(model: un.Filament, *, amplitude: float = 1e-2, rtol: float = COARSE)
 
 @pytest.fixture(scope="module")
 def spinning() -> un.Spinning:
-    found = un.find_spinning(under(170.0))
+    found = un.find(under(170.0), "spinning")
     assert isinstance(found, un.Spinning)
     return found
 
@@ -46,7 +46,7 @@ def spinning() -> un.Spinning:
 # 170: what rings about it takes 0.1 T to decay; 178: two states are stable, and it takes 0.5 T.
 @pytest.mark.parametrize("force", [45.0, 100.0, 170.0, 178.0])
 def test_a_run_ends_at_the_spinning_state_that_it_comes_to(force: float) -> None:
-    run, state = run_of(under(force)), un.find_spinning(under(force))
+    run, state = run_of(under(force)), un.find(under(force), "spinning")
     assert isinstance(state, un.Spinning)
     assert (run.ending.value, run.verdict.name) == ("solved", "spinning")
     assert run.frequency is not None
@@ -88,7 +88,7 @@ def test_the_straight_state_is_arrived_at_without_waiting_for_it() -> None:
 def test_nothing_ends_at_a_state_that_is_not_stable() -> None:
     # From next to it, and so slowly away that it looks like coming to rest there.
     for force in (182.0, 200.0):
-        state = un.find_spinning(under(force))
+        state = un.find(under(force), "spinning")
         assert isinstance(state, un.Spinning)
         assert not state.stable
         start = un.from_state(state.model, state.nodes)
@@ -98,7 +98,7 @@ def test_nothing_ends_at_a_state_that_is_not_stable() -> None:
 
 def test_a_beat_is_told_after_a_few_of_them() -> None:
     model = under(250.0)
-    run, state = run_of(model), un.find_flapping(model)
+    run, state = run_of(model), un.find(model, "flapping")
     assert (run.ending.value, run.verdict.name) == ("settled", "planar flapping")
     assert run.arrival is None
     # The steps' own error is some 1e-4 of the period at that rtol.
@@ -226,7 +226,7 @@ def test_a_run_that_was_left_can_be_gone_on_with() -> None:
 
 def test_what_follows_a_run_begins_with_the_state_that_it_was_left_for() -> None:
     model = under(100.0)
-    run, state = run_of(model), un.find_spinning(model)
+    run, state = run_of(model), un.find(model, "spinning")
     assert isinstance(state, un.Spinning)
     shape = run.last_shape
     # The same but for a turn about the axis.
@@ -277,7 +277,7 @@ def test_what_runs_do_not_tell_is_told_by_the_one_stable_state(tmp_path: Path) -
         "solved states",
     ]
     assert "spinning and planar flapping are stable" in str(stored["reason"].values.ravel()[2])
-    spun = un.find_spinning(under(75.0))
+    spun = un.find(under(75.0), "spinning")
     assert isinstance(spun, un.Spinning)
     assert stored["frequency"].values.ravel()[1] == pytest.approx(spun.frequency, rel=1e-9)
     assert json.loads(stored.attrs["study"])["study"]["undecided"] == "solve"

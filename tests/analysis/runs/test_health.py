@@ -115,7 +115,7 @@ def test_a_beat_at_less_force_does_not_fold() -> None:
     run = un.integrate(model, un.planar(model, 0.3), until=15.0)
     assert run.health.folded is False
     # The beat's largest angle, its own solution tells.
-    state = un.find_flapping(model)
+    state = un.find(model, "flapping")
     angles = state.planar.joint_angles(state.unknowns)
     assert run.health.largest_joint_angle == pytest.approx(np.abs(angles).max(), rel=1e-2)
     assert "folded" not in told(run)

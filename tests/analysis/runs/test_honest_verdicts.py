@@ -166,7 +166,7 @@ def test_a_disturbance_that_first_falls_is_waited_for_until_it_grows() -> None:
 def test_a_held_body_that_rests_where_it_would_not_stay_is_undecided() -> None:
     # Beyond its Hopf point, and started there: the shape solved for is exact.
     held = un.Filament(8, un.TipLoad(100.0), natural_curvature=(1.0, 0.0))
-    rest = un.find_equilibrium(held)
+    rest = un.find(held, "equilibrium")
     assert isinstance(rest, un.Equilibrium)
     assert not rest.stable
     found = un.integrate(held, rest.x, until="settled", limit=0.05, samples=400).verdict

@@ -25,7 +25,7 @@ def assert_among(expected: np.ndarray, found: np.ndarray) -> None:
 
 
 def test_a_model_that_is_no_single_rod_spins() -> None:
-    state, expected = un.find_spinning(PAIR), un.find_spinning(ALONE)
+    state, expected = un.find(PAIR, "spinning"), un.find(ALONE, "spinning")
     assert isinstance(state, un.Spinning)
     assert isinstance(expected, un.Spinning)
     assert state.frequency == pytest.approx(expected.frequency, rel=1e-9)
@@ -37,7 +37,7 @@ def test_a_model_that_is_no_single_rod_spins() -> None:
 
 @pytest.mark.slow
 def test_a_model_that_is_no_single_rod_flaps() -> None:
-    branch, expected = un.follow_from_onset(PAIR, "flapping", FORCE), un.find_flapping(ALONE)
+    branch, expected = un.follow_from_onset(PAIR, "flapping", FORCE), un.find(ALONE, "flapping")
     assert isinstance(branch, Branch)
     assert isinstance(expected, un.Flapping)
     assert branch.complete

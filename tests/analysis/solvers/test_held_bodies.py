@@ -115,8 +115,8 @@ def test_onset_and_equilibrium_can_be_asked_along_the_curvature() -> None:
     assert branch.complete
     alone = found(find_equilibrium(curved(20.0, (4.0, 0.0))))
     assert np.abs(branch.states[-1].nodes - alone.nodes).max() < 1e-9
-    (one, other) = un.threshold_curve(
-        curved(1.0), "onset", "model.natural_curvature.k1", (1.0, 4.0)
+    (one, other) = un.threshold(
+        curved(1.0), "onset", along=("model.natural_curvature.k1", (1.0, 4.0))
     )
     assert one.value == pytest.approx(onset(curved(1.0, (1.0, 0.0))), rel=1e-8)
     assert other.value == pytest.approx(onset(curved(1.0, (4.0, 0.0))), rel=1e-8)
@@ -136,14 +136,14 @@ def test_in_its_two_planes_an_anisotropic_filament_has_the_forces_of_its_two_sti
 def beating(ratio: float) -> Periodic:
     model = flat_sided(75.0, ratio)
     run = un.integrate(model, un.planar(model, 0.3, angle=0.5 * np.pi), until="settled", limit=3.0)
-    state = un.find_periodic(model, run)
+    state = un.find(model, "periodic", guess=run)
     assert isinstance(state, Periodic)
     return state
 
 
 @pytest.mark.slow
 def test_a_planar_beat_in_the_soft_plane_is_that_of_the_round_filament() -> None:
-    flapping = un.find_flapping(curved(75.0, (0.0, 0.0)))
+    flapping = un.find(curved(75.0, (0.0, 0.0)), "flapping")
     state = beating(1.7)
     beats = round(state.period * flapping.frequency)
     assert state.period * flapping.frequency == pytest.approx(beats, rel=1e-6)
@@ -172,7 +172,7 @@ def test_a_beat_of_a_curved_filament_is_solved_for(force: float, word: str) -> N
     model = curved(force)
     run = un.integrate(model, un.kicked(model, 0.1), until="settled", limit=3.0)
     assert run.verdict.name == word
-    state = un.find_periodic(model, run)
+    state = un.find(model, "periodic", guess=run)
     assert isinstance(state, Periodic)
     assert state.residual < 1e-10
     assert max(state.trivial) < 1e-6
@@ -186,15 +186,15 @@ def test_a_beat_of_a_curved_filament_is_solved_for(force: float, word: str) -> N
 def test_a_run_that_does_not_repeat_itself_gives_no_orbit() -> None:
     model = curved(20.0)
     run = un.integrate(model, un.kicked(model, 0.1), until=0.01)
-    state = un.find_periodic(model, run)
+    state = un.find(model, "periodic", guess=run)
     assert isinstance(state, NotFound)
     assert "run until it has settled" in state.reason
 
 
 REFUSED = {
     "is straight at rest": lambda: find_equilibrium(curved(20.0, (0.0, 0.0))),
-    "natural_curvature = (0, 0)": lambda: un.find_spinning(curved(100.0)),
-    "has no turning symmetry": lambda: un.find_flapping(curved(100.0)),
+    "natural_curvature = (0, 0)": lambda: un.find(curved(100.0), "spinning"),
+    "has no turning symmetry": lambda: un.find(curved(100.0), "flapping"),
     "periodic motions begin where others": lambda: un.follow_from_onset(
         curved(1.0), "periodic", 50.0
     ),

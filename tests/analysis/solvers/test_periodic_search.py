@@ -47,7 +47,7 @@ def check(state: un.Periodic, run: un.Run) -> None:
 
 def test_the_motion_found_from_a_run_is_that_of_the_run(settled: un.Run) -> None:
     assert settled.verdict.name == "windmilling"
-    state = found(un.find_periodic(settled))
+    state = found(un.find(settled, "periodic"))
     check(state, settled)
     assert settled.shape_frequency is not None
     # Of double period: only mirror images are the same after half of it.
@@ -57,24 +57,27 @@ def test_the_motion_found_from_a_run_is_that_of_the_run(settled: un.Run) -> None
 
 @pytest.mark.slow
 def test_every_way_to_give_a_run_leads_to_the_same_motion(settled: un.Run) -> None:
-    state = found(un.find_periodic(settled))
+    state = found(un.find(settled, "periodic"))
     stored = un.dataset_of(settled)
-    for other in (un.find_periodic(THREE, settled), un.find_periodic(THREE, stored)):
+    for other in (
+        un.find(THREE, "periodic", guess=settled),
+        un.find(THREE, "periodic", guess=stored),
+    ):
         assert found(other).frequency == state.frequency
     # Without one the run is that of the default start, which is the same.
-    assert found(un.find_periodic(THREE)).frequency == state.frequency
-    again = found(un.find_periodic(THREE, state))
+    assert found(un.find(THREE, "periodic")).frequency == state.frequency
+    again = found(un.find(THREE, "periodic", guess=state))
     assert again.period == pytest.approx(state.period, rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", [2, 5])
 def test_the_motion_found_for_a_seed_is_that_of_the_run_from_it(seed: int) -> None:
     run = un.integrate(THREE, un.kicked(THREE, seed=seed), until="settled")
-    check(found(un.find_periodic(THREE, seed=seed)), run)
+    check(found(un.find(THREE, "periodic", seed=seed)), run)
 
 
 def test_an_answer_states_how_far_its_steps_in_time_leave_it(settled: un.Run) -> None:
-    state = found(un.find_periodic(settled))
+    state = found(un.find(settled, "periodic"))
     finer = un.integrate(THREE, state.start, until=5.0 * state.period, rtol=1e-9, samples=6)
     apart = np.abs(finer.motion.nodes[-1] - finer.motion.nodes[0]).max()
     # Off by so much of a period after five of them, at a tip's speed of some 2 pi L a turn.
@@ -107,13 +110,13 @@ def test_a_spinning_run_has_no_period_of_its_shape() -> None:
     slow = un.Chain(3, un.TipLoad(25.0))
     run = un.integrate(slow, un.kicked(slow, 0.3), until="settled")
     assert run.verdict.name == "spinning"
-    state = un.find_periodic(run)
+    state = un.find(run, "periodic")
     assert isinstance(state, NotFound)
     assert "does not repeat itself (spinning)" in state.reason
 
 
 def test_a_guess_and_a_seed_are_refused_together(settled: un.Run) -> None:
-    assert "leave one out" in complaint(lambda: un.find_periodic(THREE, settled, seed=2))
+    assert "leave one out" in complaint(lambda: un.find(THREE, "periodic", guess=settled, seed=2))
 
 
 @pytest.mark.slow

@@ -45,7 +45,7 @@ def test_stability_that_is_gained_and_kept_is_told() -> None:
     said, gained = told.split(" at force ")[0], float(told.split(" at force ")[1].split()[0])
     assert said == "flapping becomes stable"
     assert told.endswith(" and stays so up to force 145")
-    below, above = (un.find_flapping(EIGHT.with_(force=part * gained)) for part in (0.99, 1.01))
+    below, above = (un.find(EIGHT.with_(force=part * gained), "flapping") for part in (0.99, 1.01))
     assert (below.stable, above.stable) == (False, True)
 
 
@@ -130,9 +130,11 @@ def test_a_filament_of_other_symmetries_is_refused_before_any_search(
 
 
 def test_a_state_with_another_symmetry_is_no_guess() -> None:
-    state = un.find_spinning(EIGHT)
-    told = complaint(lambda: un.find_spinning(EIGHT.with_(bending_ratio=1.5), state))
+    state = un.find(EIGHT, "spinning")
+    told = complaint(lambda: un.find(EIGHT.with_(bending_ratio=1.5), "spinning", guess=state))
     assert "has no turning symmetry" in told
-    beat = un.find_flapping(EIGHT)
-    told = complaint(lambda: un.find_flapping(EIGHT.with_(natural_curvature=(1.0, 0.0)), beat))
+    beat = un.find(EIGHT, "flapping")
+    told = complaint(
+        lambda: un.find(EIGHT.with_(natural_curvature=(1.0, 0.0)), "flapping", guess=beat)
+    )
     assert "has no turning symmetry" in told

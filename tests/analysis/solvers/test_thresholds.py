@@ -81,7 +81,7 @@ def test_a_threshold_is_where_the_leading_rate_of_the_state_changes_its_sign(
 
 def test_a_threshold_tells_itself_in_one_line() -> None:
     found = of_eight("spinning-lost")
-    assert str(found).startswith(f"spinning-lost at force {value_of(found):.10g} +- ")
+    assert str(found).startswith(f"spinning-lost at force {value_of(found):.10g} ± ")
     assert "torus" in str(found)
     none = Threshold("spinning-lost", None, reason="it stays stable")
     assert str(none) == "no spinning-lost: it stays stable"

@@ -56,7 +56,7 @@ def test_the_onset_is_the_hopf_point_and_a_branch_from_elsewhere_has_none() -> N
     assert again.onset == pytest.approx(un.onset(EIGHT, method="discrete").force, rel=1e-9)
     assert again.criticality == "supercritical"
     assert again.values[0] > again.onset
-    elsewhere = un.follow(un.find_spinning(EIGHT), "load.force", 80.0)
+    elsewhere = un.follow(un.find(EIGHT, "spinning"), "load.force", 80.0)
     assert (read(elsewhere).onset, read(elsewhere).criticality) == (None, None)
 
 

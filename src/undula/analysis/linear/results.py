@@ -128,8 +128,8 @@ class Crossing(Record):
     def __str__(self) -> str:
         """Return force and frequency with their errors in one line."""
         return (
-            f"Hopf point at force {self.force:.12g} +- {self.error:.1g},"
-            f" frequency {self.frequency:.12g} +- {self.frequency_error:.1g} cycles per T"
+            f"Hopf point at force {self.force:.12g} ± {self.error:.1g},"
+            f" frequency {self.frequency:.12g} ± {self.frequency_error:.1g} cycles per T"
         )
 
 

@@ -67,7 +67,7 @@ def follow(
     Examples
     --------
     >>> import undula as un
-    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(75.0)))
+    >>> state = un.find(un.Filament(8, un.TipLoad(75.0)), "spinning")
     >>> branch = un.follow(state, "load.force", 80.0)
     >>> branch.complete, all(state.stable for state in branch.states)
     (True, True)

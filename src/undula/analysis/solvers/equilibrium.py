@@ -93,7 +93,7 @@ def find_equilibrium(model: Model, guess: Equilibrium | None = None) -> Equilibr
     --------
     >>> import undula as un
     >>> curved = un.Filament(8, un.TipLoad(10.0), natural_curvature=(1.0, 0.0))
-    >>> state = un.find_equilibrium(curved)
+    >>> state = un.find(curved, "equilibrium")
     >>> state.stable, state.frequency
     (True, 0.0)
     """

@@ -80,7 +80,7 @@ def find_flapping(model: Model, guess: Run | Flapping | None = None) -> Flapping
     Examples
     --------
     >>> import undula as un
-    >>> beat = un.find_flapping(un.Filament(4, un.TipLoad(75.0), confined=True))
+    >>> beat = un.find(un.Filament(4, un.TipLoad(75.0), confined=True), "flapping")
     >>> beat.stable, round(beat.period * beat.frequency, 9)
     (True, 1.0)
     """

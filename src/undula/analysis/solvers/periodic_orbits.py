@@ -92,7 +92,7 @@ def follow_from_bifurcation(
     Following takes ten seconds:
 
     >>> import undula as un
-    >>> beat = un.find_flapping(un.Filament(6, un.TipLoad(114.0)))  # doctest: +SKIP
+    >>> beat = un.find(un.Filament(6, un.TipLoad(114.0)), "flapping")  # doctest: +SKIP
     >>> planar = un.follow(beat, "load.force", 115.0)  # doctest: +SKIP
     >>> branch = un.follow_from_bifurcation(planar.bifurcations[0], 114.5)  # doctest: +SKIP
     >>> branch.complete, branch.states[-1].stable  # doctest: +SKIP

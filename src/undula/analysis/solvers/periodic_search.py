@@ -63,7 +63,7 @@ def find_periodic(
     A windmilling chain turns twice about the axis before its shape recurs:
 
     >>> import undula as un
-    >>> state = un.find_periodic(un.Chain(3, un.TipLoad(100.0)), seed=1)
+    >>> state = un.find(un.Chain(3, un.TipLoad(100.0)), "periodic", seed=1)
     >>> state.stable, round(abs(state.turns), 6)
     (True, 2.0)
     """

@@ -57,7 +57,7 @@ def find_spinning(model: Model, guess: Run | Spinning | None = None) -> Spinning
     Examples
     --------
     >>> import undula as un
-    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(75.0)))
+    >>> state = un.find(un.Filament(8, un.TipLoad(75.0)), "spinning")
     >>> state.stable, round(state.frequency)
     (True, 87)
     """

@@ -180,7 +180,7 @@ def extrapolate(
     Examples
     --------
     >>> import undula as un
-    >>> limit = un.extrapolate(un.Filament(8, un.TipLoad(75.0)), "spinning")
+    >>> limit = un.find(un.Filament(8, un.TipLoad(75.0)), "spinning", converged=True)
     >>> limit.links[:3], limit.errors["frequency"] < 1e-4 * limit.values["frequency"]
     ((8, 16, 32), True)
     """

@@ -127,7 +127,7 @@ def threshold_curve(
     --------
     >>> import undula as un
     >>> model = un.Filament(40, un.TipLoad(75.0))
-    >>> onsets = un.threshold_curve(model, "onset", "model.drag_ratio", [1.5, 2.0])
+    >>> onsets = un.threshold(model, "onset", along=("model.drag_ratio", [1.5, 2.0]))
     >>> [round(onset.value, 4) for onset in onsets]
     [37.6954, 37.6954]
     """

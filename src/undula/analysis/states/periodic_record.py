@@ -46,7 +46,7 @@ class Periodic(State):
 
     >>> import undula as un
     >>> model = un.Filament(4, un.TipLoad(75.0))
-    >>> beat = un.find_periodic(un.integrate(model, un.planar(model, 0.1), until=0.2))
+    >>> beat = un.find(un.integrate(model, un.planar(model, 0.1), until=0.2), "periodic")
     >>> beat.nodes.shape, round(abs(beat.angle), 6), round(abs(beat.turns), 6)
     ((32, 5, 3), 3.141593, 0.5)
     """
@@ -143,6 +143,7 @@ class Periodic(State):
         """Return frequencies, force and stability in one line."""
         word = "stable" if self.stable else "unstable"
         return (
-            f"{self.frequency:.8g} cycles and {self.shape_frequency:.8g} shapes per T under force"
-            f" {self.force:.6g}: {word}, leading rate {self.leading_rate:.4g} /T"
+            f"periodic at {self.frequency:.8g} cycles per T {self._accuracy},"
+            f" {self.shape_frequency:.8g} shapes per T, under force {self.force:.6g}: {word},"
+            f" leading rate {self.leading_rate:.4g} /T"
         )

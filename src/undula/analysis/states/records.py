@@ -34,7 +34,7 @@ class Spinning(FixedShape):
     Examples
     --------
     >>> import undula as un
-    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(75.0)))
+    >>> state = un.find(un.Filament(8, un.TipLoad(75.0)), "spinning")
     >>> state.nodes.shape, bool(abs(state.trivial) < 1e-6 * abs(state.rate))
     ((9, 3), True)
     """
@@ -77,8 +77,8 @@ class Spinning(FixedShape):
         """Return kind, frequency, force and stability in one line."""
         word = "stable" if self.stable else "unstable"
         return (
-            f"spinning at {self.frequency:.8g} turns per T under force {self.force:.6g}: {word},"
-            f" leading rate {self.leading_rate:.4g} /T (trivial one {abs(self.trivial):.1g})"
+            f"spinning at {self.frequency:.8g} turns per T {self._accuracy} under force"
+            f" {self.force:.6g}: {word}, leading rate {self.leading_rate:.4g} /T"
         )
 
 
@@ -99,7 +99,7 @@ class Equilibrium(FixedShape):
     --------
     >>> import undula as un
     >>> curved = un.Filament(8, un.TipLoad(10.0), natural_curvature=(1.0, 0.0))
-    >>> state = un.find_equilibrium(curved)
+    >>> state = un.find(curved, "equilibrium")
     >>> state.nodes.shape, round(state.tip_radius.mean, 3)
     ((9, 3), 0.206)
     """
@@ -136,8 +136,9 @@ class Equilibrium(FixedShape):
         """Return force, stability and radius of the tip in one line."""
         word = "stable" if self.stable else "unstable"
         return (
-            f"at rest under force {self.force:.6g}: {word}, leading rate {self.leading_rate:.4g}"
-            f" /T, tip {self.tip_radius.mean:.4g} L off the axis"
+            f"at rest under force {self.force:.6g} ({self.model.links} links, forces balance to"
+            f" {self.residual:.1g}): {word}, leading rate {self.leading_rate:.4g} /T, tip"
+            f" {self.tip_radius.mean:.4g} L off the axis"
         )
 
 
@@ -170,7 +171,7 @@ class Flapping(State):
     Examples
     --------
     >>> import undula as un
-    >>> beat = un.find_flapping(un.Filament(4, un.TipLoad(75.0), confined=True))
+    >>> beat = un.find(un.Filament(4, un.TipLoad(75.0), confined=True), "flapping")
     >>> beat.nodes.shape, beat.leading_rate_out_of_plane
     ((64, 5, 3), None)
     """
@@ -254,7 +255,7 @@ class Flapping(State):
         out = self.leading_rate_out_of_plane
         outside = "" if out is None else f", out of it {out:.4g} /T"
         return (
-            f"flapping at {self.frequency:.8g} beats per T under force {self.force:.6g}: {word},"
-            f" leading rate in the plane {self.leading_rate_in_plane:.4g} /T{outside}"
-            f" (trivial multipliers to {max(self.trivial):.1g})"
+            f"flapping at {self.frequency:.8g} beats per T {self._accuracy} under force"
+            f" {self.force:.6g}: {word}, leading rate in the plane"
+            f" {self.leading_rate_in_plane:.4g} /T{outside}"
         )

@@ -154,6 +154,13 @@ class State(Record, ABC):
         return super().to_xarray().assign(nodes=nodes).assign_coords(axis=["x", "y", "z"])
 
     @property
+    def _accuracy(self) -> str:
+        """The number of links and how exactly the state is solved on them, or its whole error."""
+        if self.error is not None:
+            return f"± {self.error:.1g}"
+        return f"({self.model.links} links, solved to {self.solver_error:.1g})"
+
+    @property
     def energy(self) -> Range:
         """Former name of `bending_energy`."""
         message = f"{type(self).__name__}.energy is now bending_energy; the old name goes"

@@ -9,6 +9,7 @@ from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
 from undula.analysis.states.records import Equilibrium, Spinning
 from undula.app.commands.find_start import SearchStart
+from undula.app.commands.sensitivity import with_sensitivities
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, CURE
 from undula.terminal.numbers import with_error as with_digits
@@ -27,7 +28,9 @@ _UNITS = {
 }
 
 
-def find_state(start: SearchStart, kind: str, *, converge: bool) -> Answer:
+def find_state(
+    start: SearchStart, kind: str, *, converge: bool, derivatives: bool = False
+) -> Answer:
     """Solve for a state.
 
     Parameters
@@ -38,6 +41,8 @@ def find_state(start: SearchStart, kind: str, *, converge: bool) -> Answer:
         Name of the kind of state.
     converge
         If true, extrapolate to many links.
+    derivatives
+        If true, add the derivatives of all numbers by all parameters, on the finest links.
 
     Raises
     ------
@@ -56,7 +61,10 @@ def find_state(start: SearchStart, kind: str, *, converge: bool) -> Answer:
     answer = (
         _limit_answer(result) if isinstance(result, Converged) else state_answer(with_error(result))
     )
-    return Answer(answer, _text(title, answer, body=links_are_body(model)))
+    whole = Answer(answer, _text(title, answer, body=links_are_body(model)))
+    if not derivatives:
+        return whole
+    return with_sensitivities(whole, result.finest if isinstance(result, Converged) else result)
 
 
 def not_found(failure: NotFound, title: str, units: Units) -> Answer:

@@ -6,6 +6,7 @@ from typing import Any
 from undula.analysis.parameters import changed
 from undula.analysis.solvers.threshold_record import Threshold, ThresholdCurve
 from undula.analysis.solvers.thresholds import single_threshold, threshold_curve
+from undula.app.commands.sensitivity import with_sensitivities
 from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.units import Units
@@ -19,7 +20,13 @@ _FARTHER = "--up-to looks farther"
 
 
 def answer_threshold(
-    model: Model, name: str, *, converge: bool, up_to: float | None, title: str
+    model: Model,
+    name: str,
+    *,
+    converge: bool,
+    up_to: float | None,
+    title: str,
+    derivatives: bool = False,
 ) -> Answer:
     """Return the answer for one threshold.
 
@@ -35,6 +42,8 @@ def answer_threshold(
         Force at which the search ends [the model's unit of force]; None for the default.
     title : str
         Beginning of the text.
+    derivatives : bool
+        If true, add the derivatives of force and frequency by all parameters.
     """
     with searching(name) as progress:
         result = single_threshold(model, name, converged=converge, up_to=up_to, progress=progress)
@@ -46,7 +55,8 @@ def answer_threshold(
         *_cure([answer]),
         *units_lines(units.names(), units.forces),
     ]
-    return Answer(answer, "\n".join(lines))
+    whole = Answer(answer, "\n".join(lines))
+    return with_sensitivities(whole, result) if derivatives and result else whole
 
 
 def answer_threshold_curve(

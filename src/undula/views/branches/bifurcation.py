@@ -62,7 +62,7 @@ def bifurcation_diagram(
     Examples
     --------
     >>> import undula as un
-    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(60.0)))
+    >>> state = un.find(un.Filament(8, un.TipLoad(60.0)), "spinning")
     >>> branch = un.follow(state, "load.force", 80.0)
     >>> figure = un.views.bifurcation_diagram([branch], title="spinning")
     >>> figure.savefig("branch.pdf")

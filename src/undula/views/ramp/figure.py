@@ -71,7 +71,7 @@ def ramp_diagram(
     --------
     >>> import undula
     >>> from undula.views import ramp_diagram
-    >>> stored = undula.load_ramp("results/steps.nc")
+    >>> stored = undula.load("results/steps.nc")
     >>> ramp_diagram([stored]).savefig("steps.png")
     """
     series = read_series(datasets)

@@ -88,7 +88,7 @@ def movie(
     --------
     >>> import undula
     >>> from undula.views import movie
-    >>> stored = undula.load_result("results/spinning/run.nc")
+    >>> stored = undula.load("results/spinning/run.nc")
     >>> movie(stored, "spinning.mp4", frames=12).name
     'spinning.mp4'
     """

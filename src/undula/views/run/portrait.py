@@ -50,7 +50,7 @@ def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> 
     --------
     >>> import undula
     >>> from undula.views import portrait
-    >>> stored = undula.load_result("results/spinning/run.nc")
+    >>> stored = undula.load("results/spinning/run.nc")
     >>> portrait(stored).savefig("spinning.png")
     """
     if shapes < 2:

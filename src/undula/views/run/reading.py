@@ -6,6 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from undula.analysis.runs.dataset import dataset_of
+from undula.analysis.runs.run import Run
 from undula.errors import InputError
 from undula.views.common import style
 from undula.views.run.scene import Floats, Scene, turning_points
@@ -15,13 +17,13 @@ NEEDED = ("nodes", "bending_energy", "active_power", "dissipation", "rotation_an
 _CLOSE = "close_"
 
 
-def read_scene(run: xr.Dataset) -> Scene:
-    """Return the scene of a stored run.
+def read_scene(run: xr.Dataset | Run) -> Scene:
+    """Return the scene of a run.
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A stored run with dims time, node and axis, the variables in `NEEDED` and the attribute
+    run : xarray.Dataset or Run
+        A run, stored or as `undula.integrate` returns it; with dims time, node and axis, the variables in `NEEDED` and the attribute
         "summary". Variables such as "close_nodes" with the dim close_time show its last part at
         finer intervals.
 
@@ -35,6 +37,12 @@ def read_scene(run: xr.Dataset) -> Scene:
     InputError
         A variable or the summary is missing, or the run has fewer than two samples.
     """
+    if isinstance(run, Run):
+        run = dataset_of(run)
+    if not isinstance(run, xr.Dataset):
+        raise InputError(
+            f"{type(run).__name__} is no run; give what undula.integrate or undula.load returns"
+        )
     missing = [name for name in NEEDED if name not in run]
     if missing or "summary" not in run.attrs:
         raise InputError(

@@ -64,7 +64,7 @@ def basin_diagram(
     --------
     >>> import undula
     >>> from undula.views import basin_diagram
-    >>> stored = undula.load_sweep("results/starts.zarr")
+    >>> stored = undula.load("results/starts.zarr")
     >>> basin_diagram(undula.basins(stored)).savefig("basins.png")
     """
     if "fraction" not in basins or not int(basins["tries"].sum()):

@@ -89,7 +89,7 @@ def phase_diagram(
     --------
     >>> import undula
     >>> from undula.views import phase_diagram
-    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> stored = undula.load("results/point-loads.zarr")
     >>> phase_diagram(stored).savefig("diagram.png")
     """
     right, above = diagram_axes(store)

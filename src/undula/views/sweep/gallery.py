@@ -70,7 +70,7 @@ def gallery(store: xr.Dataset, *, title: str | None = None) -> Figure:
     --------
     >>> import undula
     >>> from undula.views import gallery
-    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> stored = undula.load("results/point-loads.zarr")
     >>> gallery(stored).savefig("gallery.png")
     """
     check_shapes(store)

@@ -76,7 +76,7 @@ def mean_paths(
     --------
     >>> import undula
     >>> from undula.views import mean_paths
-    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> stored = undula.load("results/point-loads.zarr")
     >>> mean_paths(stored).savefig("paths.png")
     """
     check_shapes(store)

@@ -77,7 +77,7 @@ def phase_page(
     >>> from pathlib import Path
     >>> import undula
     >>> from undula.views import phase_page
-    >>> stored = undula.load_sweep("results/point-loads.zarr")
+    >>> stored = undula.load("results/point-loads.zarr")
     >>> size = Path("page.html").write_text(phase_page(stored), "utf-8")
     """
     names, dots = diagram_axes(store), dots_of(store)
