@@ -32,3 +32,7 @@ __all__ = [
     "threshold_figure",
     "winding_figure",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

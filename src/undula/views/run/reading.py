@@ -23,9 +23,9 @@ def read_scene(run: xr.Dataset | Run) -> Scene:
     Parameters
     ----------
     run : xarray.Dataset or Run
-        A run, stored or as `undula.integrate` returns it; with dims time, node and axis, the variables in `NEEDED` and the attribute
-        "summary". Variables such as "close_nodes" with the dim close_time show its last part at
-        finer intervals.
+        A run, stored or as `undula.integrate` returns it; with dims time, node and axis, the
+        variables in `NEEDED` and the attribute "summary". Variables such as "close_nodes" with the
+        dim close_time show its last part at finer intervals.
 
     Returns
     -------
