@@ -24,11 +24,11 @@ class Fact:
     Attributes
     ----------
     value : float, int, bool, str or None
-        Its value, None if there is none.
+        Its value, None without one.
     unit : str
         Its unit, empty for none.
     error : float or None
-        Its estimated error, in the same unit; None if there is none.
+        Its estimated error, in the same unit; None without one.
     """
 
     value: Any
