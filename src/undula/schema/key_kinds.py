@@ -1,4 +1,4 @@
-"""What the keys of a JSON object hold: quantities, numbers without a unit, and names."""
+"""Kinds of the keys of a JSON object: quantities, numbers without a unit, and names."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -115,16 +115,15 @@ def follow_branch(
             break
         states.append(state)
         values.append(reached.p)
-        if (
-            stop()
-            or len(states) >= _MOST_POINTS
-            or any(enough(bifurcation) for bifurcation in bifurcations)
-        ):
+        if stop() or len(states) >= _MOST_POINTS or any(map(enough, bifurcations)):
             break
         point, problem = reached, problem.with_reference(reached.u)
-    complete = values[-1] == to
     return Branch(
-        family.parameter, np.array(values), tuple(states), Bifurcations(bifurcations), complete
+        family.parameter,
+        np.array(values),
+        tuple(states),
+        Bifurcations(bifurcations),
+        complete=values[-1] == to,
     )
 
 
