@@ -8,9 +8,10 @@ from matplotlib.figure import Figure
 
 from undula.analysis.record import Fact, Record
 
-#: Resolution of the picture, and its largest width on the page.
-_DPI, _WIDTH = 100, "420px"
-_CELL = "text-align:left;padding:2px 10px 2px 0;overflow-wrap:anywhere;white-space:normal"
+#: Resolution of the picture, and pixels of the page for an inch of it: type stays readable.
+_DPI, _PIXELS = 140, 80
+_NAME = "text-align:left;vertical-align:top;padding:2px 10px 2px 0"
+_VALUE = "text-align:left;padding:2px 0;overflow-wrap:anywhere;white-space:normal"
 
 
 def as_html(record: Record) -> str:
@@ -36,7 +37,7 @@ def _is_shown(fact: Fact) -> bool:
 
 def _row(name: str, fact: Fact) -> str:
     words = escape(name.replace("_", " "))
-    return f'<tr><td style="{_CELL}">{words}</td><td style="{_CELL}">{escape(str(fact))}</td></tr>'
+    return f'<tr><td style="{_NAME}">{words}</td><td style="{_VALUE}">{escape(str(fact))}</td></tr>'
 
 
 def _picture(record: Record) -> str:
@@ -48,8 +49,8 @@ def _picture(record: Record) -> str:
     image = BytesIO()
     figure.savefig(image, format="png", dpi=_DPI)
     content = base64.b64encode(image.getvalue()).decode("ascii")
-    label = escape(str(record))
+    label, width = escape(str(record)), _PIXELS * figure.get_figwidth()
     return (
         f'<img src="data:image/png;base64,{content}" alt="{label}"'
-        f' style="width:{_WIDTH};max-width:100%;height:auto">'
+        f' style="width:{round(width)}px;max-width:100%;height:auto">'
     )
