@@ -26,15 +26,17 @@ from undula.app.reproduce_command import reproduce
 from undula.app.solving_commands import find, follow, stability, threshold
 from undula.app.sweep_commands import status, sweep
 from undula.interrupts import end_signals_raise
-from undula.terminal.output import INTERRUPTED, interrupted, refuse
+from undula.terminal.output import BAD_INPUT, DONE, INTERRUPTED, interrupted, refuse
 
 # The matrices are small: more threads of the linear algebra would slow it down.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# Status of typer for a shell without completion, which it has named on standard error.
+_UNKNOWN_SHELL = 1
+
 app = typer.Typer(
     name="undula",
     cls=Commands,
-    add_completion=False,
     pretty_exceptions_enable=False,
     # As mark-up, rich would take words in square brackets for commands and omit them.
     rich_markup_mode=None,
@@ -80,9 +82,13 @@ def _execute(words: Sequence[str]) -> int:
         with stored_warnings_noticed(), end_signals_raise():
             status = int(app(words, prog_name="undula", standalone_mode=False) or 0)
         # Typer turns KeyboardInterrupt into this status.
-        return interrupted() if status == INTERRUPTED else status
+        if status == INTERRUPTED:
+            return interrupted()
+        return BAD_INPUT if status == _UNKNOWN_SHELL else status
     except KeyboardInterrupt:
         return interrupted()
+    except SystemExit as end:  # of typer's options on completion
+        return int(end.code or DONE)
     except Exception as error:
         from undula.app.mistakes import sentence_of
 
@@ -107,10 +113,6 @@ def undula(
     ] = False,
 ) -> None:
     """Elastic microfilaments in viscous fluid under follower forces: run, judge and draw them."""
-
-
-for _command in (stability, find, follow, threshold, sweep, status, reproduce):
-    app.command()(_command)
 
 
 @app.command()
@@ -174,8 +176,8 @@ def resume(
         return finish(job, claim, views, budget=seconds, lyapunov=lyapunov, as_json=as_json)
 
 
-app.command()(plot)
-app.command()(movie)
+for _command in (plot, movie, stability, find, follow, threshold):
+    app.command()(_command)
 
 
 @app.command()
@@ -215,6 +217,10 @@ def step(
     return run_ramp(job, budget=seconds, as_json=as_json)
 
 
+for _command in (sweep, status, reproduce):
+    app.command()(_command)
+
+
 @app.command()
 def units(
     force: Annotated[float | None, typer.Option(help="A force in B/L^2, to pN.")] = None,
@@ -233,7 +239,7 @@ def units(
 ) -> int:
     """Convert dimensionless numbers of a filament to physical ones, and back."""
     from undula.app.commands.units import convert, scales_of, units_answer, units_text, without_none
-    from undula.terminal.output import DONE, reply
+    from undula.terminal.output import reply
 
     scales = scales_of(length, stiffness, viscosity, slenderness)
     converted = convert(
