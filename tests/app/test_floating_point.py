@@ -50,7 +50,7 @@ LONG = {
     "periodic": ["find", "periodic", *FEW, "--set", "load.force=200"],
     "to the end": ["run", *FEW, *SHORT, "--set", "time.until='settled'"],
     "exponents": ["run", *FEW, *SHORT, "--lyapunov"],
-    "steps": ["step", *FEW, "--along", "load.force=30:50:10", *SHORT[:4]],
+    "steps": ["step", *FEW, "--along", "load.force=30:50:3", *SHORT[:4]],
 }
 
 

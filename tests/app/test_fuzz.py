@@ -63,7 +63,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Files:
     small = ["--set", "model.segments=6", "--set", "time.until=0.01", "--set", "time.samples=11"]
     with contextlib.chdir(folder):
         assert main(["run", *small, "--no-movie", "--out", "."]) == DONE
-        assert main(["step", *small, "--along", "load.force=50:52:1", "--out", "."]) == DONE
+        assert main(["step", *small, "--along", "load.force=50:52:3", "--out", "."]) == DONE
         assert main(["sweep", "study.toml", "--workers", "1", "--out", "store.zarr"]) == DONE
     return Files(folder)
 

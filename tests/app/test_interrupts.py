@@ -127,7 +127,7 @@ def test_a_series_of_steps_keeps_its_steps(
 ) -> None:
     # In the moment in which the first step is stored.
     monkeypatch.setattr("undula.app.commands.step._Saver.__call__", sends(ending, times=2))
-    words = ["step", *FEW, "--along", "load.force=10:30:10", "--out", str(tmp_path), "--json"]
+    words = ["step", *FEW, "--along", "load.force=10:30:3", "--out", str(tmp_path), "--json"]
     asked = ask(*words)
     found = answer(asked, status=3)
     assert found["status"] == "interrupted"

@@ -29,8 +29,8 @@ COMMANDS = [
     "plot study.zarr --out {}",
     "movie {}",
     "movie run.nc --out {}",
-    "step {} --along load.force=1:2:1 --out new",
-    "step --along load.force=1:2:1 --out {}",
+    "step {} --along load.force=1:2:2 --out new",
+    "step --along load.force=1:2:2 --out {}",
     "stability {}",
     "stability --plot {}",
     "find spinning {}",
@@ -63,10 +63,10 @@ NAMES = [
 #: Nothing can be looked at there, or nothing written.
 CLOSED = ["closed", "closed/x.png", "closed/a/run.nc", "readonly/x.png", "readonly/a/run.mp4", "/"]
 #: What may well be done: results into the folder where one is, or into one that is there.
-FOLDERS = ("run --out {}", "step --along load.force=1:2:1 --out {}")
+FOLDERS = ("run --out {}", "step --along load.force=1:2:2 --out {}")
 CLOSED_FOLDERS = [
     *(("run --out", name) for name in ("closed", "readonly", "/proc")),
-    *(("step --along load.force=1:2:1 --out", name) for name in ("closed", "readonly")),
+    *(("step --along load.force=1:2:2 --out", name) for name in ("closed", "readonly")),
 ]
 MANY = """
 import contextlib, io, json, sys

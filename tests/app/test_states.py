@@ -383,7 +383,7 @@ BAD_WORDS = [
     ("follow hopping --along load.force=40:50", "'hopping' is no kind of state"),
     ("follow spinning --along load.force", "write it like load.force=38:300"),
     ("follow spinning --along load.force=40", "write it like load.force=38:300"),
-    ("follow spinning --along load.force=40:50:3", "write it like load.force=38:300"),
+    ("follow spinning --along load.force=40:50:3:4", "write it like load.force=38:300"),
     ("follow spinning --along load.force=40:40", "goes nowhere"),
     ("follow spinning --along load.force=40:nan", "nan is not a finite number"),
     ("follow spinning --along load.force=-1:40", "force = -1.0"),

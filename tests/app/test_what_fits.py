@@ -18,7 +18,8 @@ from undula.analysis.runs.integrate import Progress
 from undula.analysis.runs.memory_needed import memory, needed_memory, refuse_too_large
 from undula.inputs.input import parse_input
 from undula.inputs.overrides import read_toml
-from undula.inputs.ranges import parse_steps, parse_values
+from undula.inputs.ramp_values import parse_ramp
+from undula.inputs.ranges import parse_values
 from undula.inputs.sweep_table import MOST_POINTS
 from undula.sweeps import disk_space as store_room
 from undula.sweeps.store import open_sweep
@@ -128,7 +129,7 @@ def test_tries_values_and_steps_have_ends_that_are_told(tmp_path: Path) -> None:
     random = ('study.policy="random"', "study.tries=1000000000")
     assert f"{MOST_POINTS}" in complaint(lambda: sweep_of(tmp_path, AXES.format(count=3), *random))
     assert f"{MOST_POINTS}" in complaint(lambda: sweep_of(tmp_path, AXES.format(count=10**7)))
-    assert f"{MOST_STEPS}" in complaint(lambda: parse_steps("--along", "load.force=0:1e9:1"))
+    assert f"{MOST_STEPS}" in complaint(lambda: parse_ramp("--along", "load.force=0:1e9:1"))
     assert f"{MOST_STEPS}" in complaint(lambda: Ramp("load.force", (1.0,) * (MOST_STEPS + 1)))
     assert "1000000" in complaint(lambda: parse_values("--forces", "0:1:10000000"))
     assert "1000000" in complaint(lambda: parse_values("--forces", "1," * 10**6 + "1"))

@@ -14,7 +14,16 @@ SOURCE = Path(undula.__file__).parent
 ROOMS = ("analysis", "models", "numerics")
 #: Of the other packages the files that read nothing that is typed and no file that a command makes.
 PURE = {
-    "inputs": ("build", "messages", "model_tables", "ranges", "run_tables", "sweep_table", "table"),
+    "inputs": (
+        "build",
+        "messages",
+        "model_tables",
+        "ramp_values",
+        "ranges",
+        "run_tables",
+        "sweep_table",
+        "table",
+    ),
     "sweeps": ("chunk_grid", "point", "sweep"),
     "schema": ("sweep_variables",),
     "storage": ("differences",),

@@ -42,7 +42,7 @@ def results_in(folder: Path) -> None:
     run = ["run", "--set", "model.segments=4", *QUICK, "--no-movie", "--out", "results/spinning"]
     assert main(run) == 0
     for links in range(2, 7):
-        along = ["--along", "load.force=1:2:1", "--out", f"results/chain{links}"]
+        along = ["--along", "load.force=1:2:2", "--out", f"results/chain{links}"]
         assert main(["step", *FEW_LINKS, f"model.links={links}", *along]) == 0
     done(sweep_of(folder, STUDY), folder / "results" / "point-loads.zarr")
 

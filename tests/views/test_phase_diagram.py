@@ -477,6 +477,26 @@ def test_a_folder_is_drawn_as_a_study(sweep: Path, ask: Ask) -> None:
     assert not (sweep / NAME).exists()
 
 
+@pytest.mark.parametrize(("value", "taken"), [("33", 40.0), ("0", 20.0), ("1e9", 160.0)])
+def test_the_nearest_stored_value_is_drawn_and_said(
+    value: str, taken: float, sweep: Path, ask: Ask
+) -> None:
+    asked = ask("plot", sweep, "--at", f"load.force={value}", "--json", "--overwrite")
+    found = answer(asked)
+    assert (found["at"], found["points"]) == ({"load.force": taken}, 4)
+    number = f"{float(value):g}"
+    assert asked.told == (
+        f"undula: {sweep} has no load.force = {number}; {taken:g}, the nearest value, is drawn\n"
+    )
+
+
+def test_a_stored_value_written_with_fewer_digits_is_drawn_without_a_word(
+    sweep: Path, ask: Ask
+) -> None:
+    asked = ask("plot", sweep, "--at", "load.force=40.00001", "--json", "--overwrite")
+    assert (answer(asked)["at"], asked.told) == ({"load.force": 40.0}, "")
+
+
 @pytest.mark.parametrize("view", ["gallery", "paths", "basins"])
 def test_each_view_has_a_file_of_its_own(view: str, sweep: Path, ask: Ask) -> None:
     assert answer(ask("plot", sweep, "--view", view, "--json"))["figure"] == f"study-{view}.png"
@@ -526,7 +546,6 @@ def test_borders_are_solved_for_once(sweep: Path, ask: Ask) -> None:
         (["--view", "pie"], "--view pie is not known"),
         (["--out", "study.gif"], "does not end like a figure"),
         (["--out", "study.html", "--view", "gallery"], "is a page"),
-        (["--at", "load.force=33"], "load.force = 33 is no value of the store"),
         (["--at", "load.slope=0"], "load.slope is no axis"),
         (["--at", "load.force=20,40"], "has 2 values"),
     ],

@@ -8,10 +8,12 @@ from typing import Annotated
 
 import typer
 
+from undula.app.follow_command import follow
 from undula.app.help import Commands
 from undula.app.options import (
     Budget,
     Changes,
+    Csv,
     Folder,
     Input,
     Json,
@@ -23,7 +25,7 @@ from undula.app.options import (
 )
 from undula.app.plot_commands import movie, plot
 from undula.app.reproduce_command import reproduce
-from undula.app.solving_commands import find, follow, stability, threshold
+from undula.app.solving_commands import find, stability, threshold
 from undula.app.sweep_commands import status, sweep
 from undula.interrupts import end_signals_raise
 from undula.terminal.output import BAD_INPUT, DONE, INTERRUPTED, interrupted, refuse
@@ -176,7 +178,9 @@ def resume(
         return finish(job, claim, views, budget=seconds, lyapunov=lyapunov, as_json=as_json)
 
 
-for _command in (plot, movie, stability, find, follow, threshold):
+app.command()(plot)
+app.command()(movie)
+for _command in (stability, find, follow, threshold):
     app.command()(_command)
 
 
@@ -184,7 +188,10 @@ for _command in (plot, movie, stability, find, follow, threshold):
 def step(
     along: Annotated[
         str,
-        typer.Option(metavar="KEY=START:STOP:STEP", help="The values, as load.force=0:60:0.5."),
+        typer.Option(
+            metavar="KEY=RANGE",
+            help="The values, as load.force=0:60:121, 0,20,60, or in steps as 0:60:0.5.",
+        ),
     ],
     file: Input = None,
     changes: Changes = None,
@@ -198,6 +205,7 @@ def step(
     overwrite: Overwrite = False,
     budget: Budget = None,
     as_json: Json = False,
+    as_csv: Csv = False,
 ) -> int:
     """Settle at a value of a parameter, change it, settle again from there, and so on.
 
@@ -207,18 +215,20 @@ def step(
     from undula.app.commands.run_job import reads_of
     from undula.app.commands.step import RampJob, plan, run_ramp
     from undula.inputs.ramp_input import read_ramp_input
+    from undula.terminal.output import answer_form
 
-    seconds = seconds_of(budget)
+    form, seconds = answer_form(as_json=as_json, as_csv=as_csv), seconds_of(budget)
     wanted = read_ramp_input(file, changes or ())
-    series = plan(wanted, along, back=down, kick=kick, seed=seed)
+    series, remark = plan(wanted, along, back=down, kick=kick, seed=seed)
     result = (out or Path("results") / (file.stem if file else "step")) / "steps.nc"
     reads = reads_of(file, wanted)
-    job = RampJob(wanted, series, result, reads, overwrite=overwrite, with_thresholds=thresholds)
-    return run_ramp(job, budget=seconds, as_json=as_json)
+    job = RampJob(wanted, series, result, reads, overwrite, thresholds, remark)
+    return run_ramp(job, form, budget=seconds)
 
 
-for _command in (sweep, status, reproduce):
-    app.command()(_command)
+app.command()(sweep)
+app.command()(status)
+app.command()(reproduce)
 
 
 @app.command()

@@ -21,6 +21,9 @@ def sentence_of(error: Exception) -> str | None:
     # The class of wrong options has no public name in some versions of typer.
     format_message = getattr(error, "format_message", None)
     if format_message is not None:
+        if getattr(error, "option_name", None) == "--csv":
+            command = getattr(getattr(error, "ctx", None), "info_name", None)
+            return f"undula {command} answers with no table; leave out --csv, or use --json"
         return str(format_message())
     if isinstance(error, OSError) and error.filename is not None and error.errno in _CLOSED:
         return (

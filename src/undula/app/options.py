@@ -52,6 +52,7 @@ Changes = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key, as in load.force=80."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Answer with exactly one JSON object.")]
+Csv = Annotated[bool, typer.Option("--csv", help="Answer with a table of comma-separated values.")]
 Plot = Annotated[
     Path | None, typer.Option(metavar="FILE", parser=a_file, help="Figure: .png, .pdf or .svg.")
 ]
@@ -72,14 +73,18 @@ Budget = Annotated[
     float | None,
     typer.Option(metavar="SECONDS", help="Stop after so long, with what there is (exit status 3)."),
 ]
-FollowedKind = Annotated[
-    str,
-    typer.Argument(metavar="KIND", help="straight, spinning, flapping, equilibrium or periodic."),
+FollowedKinds = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="KIND... [FILE.toml]",
+        help="straight, spinning, flapping, equilibrium or periodic, one or several.",
+    ),
 ]
-Way = Annotated[
+Along = Annotated[
     str,
     typer.Option(
-        metavar="KEY=START:END", help="The way, as load.force=38:300 or load.force=onset:300."
+        metavar="KEY=START:END",
+        help="The way, as load.force=38:300 or load.force=onset:300; KEY=RANGE for values on it.",
     ),
 ]
 RunsToDraw = Annotated[
@@ -94,7 +99,9 @@ ThresholdName = Annotated[
 ]
 SecondParameter = Annotated[
     str | None,
-    typer.Option(metavar="KEY=RANGE", help="Along a parameter, as model.drag_ratio=1:3:9."),
+    typer.Option(
+        metavar="KEY=RANGE", help="Along a parameter, as model.drag_ratio=1:3:9 or 1,2,3."
+    ),
 ]
 EndOfSearch = Annotated[
     float | None,

@@ -30,7 +30,7 @@ def plot(
     ] = "diagram",
     at: Annotated[
         list[str] | None,
-        typer.Option("--at", metavar="KEY=VALUE", help="Of a study: a value of one of its axes."),
+        typer.Option("--at", metavar="KEY=VALUE", help="Of a study: at or near this value."),
     ] = None,
     boundaries: Annotated[
         bool, typer.Option("--borders", help="Of a study: solve for borders, and compare.")

@@ -1,34 +1,31 @@
-"""The commands that solve for states: stability, find, follow and threshold."""
+"""The commands that solve for states: stability, find and threshold."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from undula.app.drawn_answer import figure_claimed, reply_drawn
 from undula.app.options import (
     Changes,
     Converge,
+    Csv,
     Derivatives,
     EndOfSearch,
-    FollowedKind,
     Input,
     Json,
     Overwrite,
     Plot,
-    RunsToDraw,
     SecondParameter,
     ThresholdName,
-    Way,
     a_file,
 )
 from undula.errors import InputError
 
 if TYPE_CHECKING:
+    from undula.inputs.input import ModelInput
     from undula.storage.outputs import Claim
-    from undula.terminal.output import Answer
+    from undula.terminal.output import Form
 
 
 def stability(
@@ -38,10 +35,7 @@ def stability(
         str | None,
         typer.Option(metavar="RANGE", help="Leading eigenvalue at these forces, as 0:60:121."),
     ] = None,
-    along: Annotated[
-        str | None,
-        typer.Option(metavar="KEY=RANGE", help="Along a parameter, as load.slope=-1:1:41."),
-    ] = None,
+    along: SecondParameter = None,
     method: Annotated[
         str | None,
         typer.Option(help="spectral, modes or discrete; short for --set stability.method=."),
@@ -49,6 +43,7 @@ def stability(
     plot: Plot = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
+    as_csv: Csv = False,
 ) -> int:
     """Tell when the straight filament begins to ring and to oscillate, and how fast.
 
@@ -56,16 +51,21 @@ def stability(
     with both a map.
     """
     from undula.app.commands.stability import StabilityRequest, analyse
+    from undula.app.commands.tables import stability_table
     from undula.inputs.input import read_stability_input
     from undula.inputs.ranges import parse_axis, parse_values
+    from undula.terminal.output import answer_form
 
+    form = answer_form(as_json=as_json, as_csv=as_csv)
+    if as_csv and forces is None and along is None:
+        raise InputError("--csv writes a table; give --forces or --along as well")
     overrides = [*(changes or ()), *([f"stability.method={method}"] if method is not None else [])]
     request = StabilityRequest(
         wanted=read_stability_input(file, overrides),
         forces=None if forces is None else parse_values("--forces", forces),
         along=None if along is None else parse_axis("--along", along),
     )
-    with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
+    with figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
         answer, draw = analyse(request)
 
         def save(path: Path) -> None:
@@ -73,7 +73,7 @@ def stability(
 
             save_figure(draw(), path, claim)
 
-        return _reply(answer, plot, save, as_json=as_json)
+        return reply_drawn(answer, plot, save, form, stability_table)
 
 
 def find(
@@ -116,45 +116,6 @@ def find(
     return DONE
 
 
-def follow(
-    kind: FollowedKind,
-    along: Way,
-    file: Input = None,
-    changes: Changes = None,
-    converge: Converge = False,
-    plot: Plot = None,
-    runs: RunsToDraw = None,
-    overwrite: Overwrite = False,
-    as_json: Json = False,
-) -> int:
-    """Follow a state along a parameter, with its stability and its bifurcations."""
-    from undula.analysis.linear.straight_branch import StraightBranch
-    from undula.app.commands.follow import ParameterInterval, follow_along
-    from undula.inputs.build import build_model
-    from undula.inputs.input import read_model_input
-    from undula.inputs.ranges import parse_way
-    from undula.terminal.compile_notice import compilation_announced
-    from undula.terminal.output import notice
-
-    wanted = read_model_input(file, changes or ())
-    interval = ParameterInterval(*parse_way("--along", along))
-    with _figure_claimed(plot, overwrite=overwrite, reads=[file, *(runs or ())]) as claim:
-        stored = _runs_to_draw(kind, interval.parameter, plot, runs or ())
-        model, title = build_model(wanted), wanted.describe({interval.parameter})
-        with compilation_announced(notice):
-            answer, branch = follow_along(model, kind, interval, converge=converge, title=title)
-
-        def save(path: Path) -> None:
-            from undula.app.commands.drawing import draw_branch, draw_straight
-
-            if isinstance(branch, StraightBranch):
-                draw_straight(branch, path, claim, title=title, units=model.units.names())
-            elif branch is not None:
-                draw_branch(branch, stored, path, claim, title=title)
-
-        return _reply(answer, None if branch is None else plot, save, as_json=as_json)
-
-
 def threshold(
     name: ThresholdName,
     file: Input = None,
@@ -166,87 +127,82 @@ def threshold(
     sensitivities: Derivatives = False,
     overwrite: Overwrite = False,
     as_json: Json = False,
+    as_csv: Csv = False,
 ) -> int:
     """Find the force at which a state gains or loses stability, also along a parameter."""
-    from undula.analysis.parameters import FORCE
-    from undula.app.commands.threshold import answer_threshold, answer_threshold_curve
-    from undula.inputs.build import build_model
     from undula.inputs.input import read_model_input
     from undula.inputs.ranges import parse_axis
+    from undula.terminal.output import answer_form
+
+    form = answer_form(as_json=as_json, as_csv=as_csv)
+    wanted, end = read_model_input(file, changes or ()), _end_of_search(up_to)
+    if along is not None:
+        if sensitivities:
+            raise InputError("--sensitivities is of one threshold; leave out --along")
+        axis = parse_axis("--along", along)
+        with figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
+            return _threshold_curve(name, wanted, axis, converge, end, (plot, claim), form)
+    if plot is not None:
+        raise InputError("--plot draws a curve; give --along as well")
+    if as_csv:
+        raise InputError("--csv writes a table; give --along as well")
+    return _single_threshold(name, wanted, converge, end, sensitivities, form)
+
+
+def _single_threshold(
+    name: str,
+    wanted: "ModelInput",
+    converge: bool,
+    end: float | None,
+    sensitivities: bool,
+    form: "Form",
+) -> int:
+    from undula.analysis.parameters import FORCE
+    from undula.app.commands.tables import threshold_table
+    from undula.app.commands.threshold import answer_threshold
+    from undula.inputs.build import build_model
     from undula.terminal.compile_notice import compilation_announced
     from undula.terminal.output import notice
 
-    wanted = read_model_input(file, changes or ())
-    model, end = build_model(wanted), _end_of_search(up_to)
-    if along is None:
-        if plot is not None:
-            raise InputError("--plot draws a curve; give --along as well")
-        title = wanted.describe({FORCE})
-        with compilation_announced(notice):
-            answer = answer_threshold(
-                model, name, converge=converge, up_to=end, title=title, derivatives=sensitivities
-            )
-        return _reply(answer, None, as_json=as_json)
-    if sensitivities:
-        raise InputError("--sensitivities is of one threshold; leave out --along")
-    axis = parse_axis("--along", along)
-    with _figure_claimed(plot, overwrite=overwrite, reads=[file]) as claim:
-        title = wanted.describe({FORCE, axis[0]})
-        with compilation_announced(notice):
-            answer, thresholds = answer_threshold_curve(
-                model, name, axis, converge=converge, up_to=end, title=title
-            )
-
-        def save(path: Path) -> None:
-            _save_curve(path, claim, (name, axis, thresholds), title, model.units.names())
-
-        return _reply(answer, plot, save, as_json=as_json)
+    model, title = build_model(wanted), wanted.describe({FORCE})
+    with compilation_announced(notice):
+        answer = answer_threshold(
+            model, name, converge=converge, up_to=end, title=title, derivatives=sensitivities
+        )
+    return reply_drawn(answer, None, None, form, threshold_table)
 
 
-def _save_curve(
-    path: Path, claim: "Claim", curve: tuple[Any, ...], title: str, units: Mapping[str, str]
-) -> None:
-    """Draw a curve: a threshold's name, the axis of the parameter, and those that were found."""
-    from undula.app.commands.drawing import draw_thresholds
-
-    name, (parameter, values), thresholds = curve
-    done = parameter, values[: len(thresholds)]
-    draw_thresholds(name, done, thresholds, path, claim, title=title, units=units)
-
-
-def _reply(
-    answer: "Answer",
-    figure: Path | None,
-    save: Callable[[Path], None] | None = None,
-    *,
-    as_json: bool,
+def _threshold_curve(
+    name: str,
+    wanted: "ModelInput",
+    axis: tuple[str, tuple[float, ...]],
+    converge: bool,
+    end: float | None,
+    figure: tuple[Path | None, "Claim"],
+    form: "Form",
 ) -> int:
-    """Draw the figure, if it has a name, and answer; return the exit status.
+    """Answer with a threshold along a parameter, and draw it under a claimed name."""
+    from undula.analysis.parameters import FORCE
+    from undula.app.commands.tables import threshold_table
+    from undula.app.commands.threshold import answer_threshold_curve
+    from undula.inputs.build import build_model
+    from undula.terminal.compile_notice import compilation_announced
+    from undula.terminal.output import notice
 
-    A figure that cannot be drawn does not suppress the answer.
-    """
-    from undula.terminal.output import STOPPED_EARLY, notice, reply
+    (parameter, values), (plot, claim) = axis, figure
+    model, title = build_model(wanted), wanted.describe({FORCE, parameter})
+    with compilation_announced(notice):
+        answer, thresholds = answer_threshold_curve(
+            model, name, axis, converge=converge, up_to=end, title=title
+        )
 
-    status = _exit_status(answer)
-    try:
-        if figure is not None and save is not None:
-            save(figure)
-    except InputError as error:
-        notice(f"there is no figure: {error}")
-        figure, status = None, STOPPED_EARLY
-    answer = _with_figure(answer, figure)
-    reply(answer.answer, answer.text, as_json=as_json)
-    return status
+    def save(path: Path) -> None:
+        from undula.app.commands.drawing import draw_thresholds
 
+        done, units = (parameter, values[: len(thresholds)]), model.units.names()
+        draw_thresholds(name, done, thresholds, path, claim, title=title, units=units)
 
-def _exit_status(answer: "Answer") -> int:
-    """Return the exit status; give notice of a search that Ctrl-C has ended early."""
-    from undula.terminal.output import DONE, STOPPED_EARLY, notice
-
-    if answer.answer["status"] != "interrupted":
-        return DONE
-    notice("interrupted; what was found until then is told, the same command begins anew")
-    return STOPPED_EARLY
+    return reply_drawn(answer, plot, save, form, threshold_table)
 
 
 def _end_of_search(up_to: float | None) -> float | None:
@@ -255,42 +211,3 @@ def _end_of_search(up_to: float | None) -> float | None:
     if up_to is not None and not 0.0 < up_to < float("inf"):
         raise InputError(f"--up-to {up_to} is out of range; give a finite force above 0")
     return up_to
-
-
-def _with_figure(answer: "Answer", figure: Path | None) -> "Answer":
-    """Return an answer with the name of its figure, null without one."""
-    text = answer.text if figure is None else f"{answer.text}\n  figure  {figure}"
-    named = answer.answer | {"figure": None if figure is None else str(figure)}
-    return replace(answer, answer=named, text=text)
-
-
-def _runs_to_draw(kind: str, parameter: str, plot: Path | None, runs: Sequence[Path]) -> list[Any]:
-    """Return the stored runs; refuse a figure that cannot be drawn before anything is computed."""
-    if runs and (plot is None or kind == "straight"):
-        raise InputError("--run draws a dot beside spinning or flapping; give --plot for these")
-    if plot is not None and kind == "straight":
-        from undula.app.commands.drawing import check_straight
-
-        check_straight(parameter)
-    if not runs:
-        return []
-    from undula.storage.run_file import load_result
-
-    return [load_result(run) for run in runs]
-
-
-@contextmanager
-def _figure_claimed(
-    path: Path | None, *, overwrite: bool, reads: Sequence[Path | None]
-) -> Iterator["Claim"]:
-    """Claim the name of a figure, if it has one, before anything is computed."""
-    from undula.storage.outputs import claimed
-
-    names = [] if path is None else [path]
-    if path is not None:
-        from undula.app.commands.drawing import check_figure_name
-
-        check_figure_name("--plot", path)
-    files = [file for file in reads if file is not None]
-    with claimed(*names, overwrite=overwrite, reads=files) as claim:
-        yield claim

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from undula.app.options import Budget, Changes, Json, a_file, a_path, seconds_of
+from undula.app.options import Budget, Changes, Csv, Json, a_file, a_path, seconds_of
 
 
 def sweep(
@@ -52,8 +52,13 @@ def status(
         Path, typer.Argument(metavar="STORE", parser=a_path, help="What undula sweep made.")
     ],
     as_json: Json = False,
+    as_csv: Csv = False,
 ) -> int:
-    """Tell how far a study is, also while it goes on: points done, verdicts, failures."""
-    from undula.app.commands.sweep import report_status
+    """Tell how far a study is, also while it goes on: points done, verdicts, failures.
 
-    return report_status(store, as_json=as_json)
+    With --csv all points with their results.
+    """
+    from undula.app.commands.sweep import report_status
+    from undula.terminal.output import answer_form
+
+    return report_status(store, answer_form(as_json=as_json, as_csv=as_csv))

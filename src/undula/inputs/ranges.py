@@ -1,11 +1,11 @@
 """Values on the command line: a range such as ``0:60:121``, or a list such as ``20,30,40``."""
 
 import math
-from decimal import Decimal
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from undula.analysis.ramps.ramp import MOST_STEPS
 from undula.errors import InputError
 
 #: Largest number of points of a range; more count as a typing error.
@@ -36,14 +36,14 @@ def parse_values(option: str, text: str) -> tuple[float, ...]:
     if len(parts) == 1:
         if text.count(",") >= _MOST_NUMBERS:
             raise InputError(f"{option} lists more than {_MOST_NUMBERS} numbers; give fewer")
-        return tuple(_number(option, text, part) for part in text.split(","))
+        return tuple(number_in(option, text, part) for part in text.split(","))
     if len(parts) != 3:
         raise _wrong(option, text)
-    start, stop = (_number(option, text, part) for part in parts[:2])
+    start, stop = (number_in(option, text, part) for part in parts[:2])
     count = parts[2].strip()
     # Python refuses to convert whole numbers of thousands of digits.
-    digits = count.isascii() and count.isdigit() and len(count) <= len(str(_MOST_NUMBERS))
-    if not (digits and 1 <= int(count) <= _MOST_NUMBERS):
+    short = len(count) <= len(str(_MOST_NUMBERS))
+    if not (is_whole(count) and short and 1 <= int(count) <= _MOST_NUMBERS):
         raise InputError(
             f"{option} {text}: {count or 'nothing'} is no number of points; give a whole number"
             f" from 1 to {_MOST_NUMBERS}"
@@ -53,8 +53,29 @@ def parse_values(option: str, text: str) -> tuple[float, ...]:
     return tuple(np.linspace(start, stop, int(count)).tolist())
 
 
-def parse_way(option: str, text: str) -> tuple[str, float | None, float]:
-    """Return the parameter, the start and the end of ``load.force=38:300``.
+class Way(NamedTuple):
+    """The interval of a parameter, and the values in it that were asked for.
+
+    Attributes
+    ----------
+    parameter
+        Name of the parameter.
+    start
+        First value; None for the onset of instability of the straight state.
+    end
+        Last value.
+    values
+        All values, from `start` to `end`; None without a choice of them.
+    """
+
+    parameter: str
+    start: float | None
+    end: float
+    values: tuple[float, ...] | None = None
+
+
+def parse_way(option: str, text: str) -> Way:
+    """Return the way of ``load.force=38:300``, ``load.force=38:300:27`` or of a list of values.
 
     The start is None for ``load.force=onset:300``, the onset of instability of the straight state.
 
@@ -63,80 +84,63 @@ def parse_way(option: str, text: str) -> tuple[str, float | None, float]:
     option
         Name of the option, for messages.
     text
-        ``KEY=START:END``.
+        ``KEY=START:END``, or a parameter and at least two values as for `parse_axis`.
 
     Raises
     ------
     InputError
-        The parameter is missing, or the ends are not two different numbers.
+        The parameter is missing, the ends are not two different numbers, or the values turn back.
     """
     name, equals, interval = (part.strip() for part in text.partition("="))
     ends = interval.split(":")
-    if not (name and equals and len(ends) == 2):
+    if not (name and equals and (len(ends) in (2, 3) or "," in interval)):
         raise InputError(f"{option} {text} has no 'KEY=START:END'; write it like load.force=38:300")
-    end = _number(option, text, ends[1])
+    if len(ends) != 2:
+        return _way_of_values(option, text, name, interval)
+    end = number_in(option, text, ends[1])
     if ends[0].strip() == "onset":
-        return name, None, end
-    start = _number(option, text, ends[0])
+        return Way(name, None, end)
+    start = number_in(option, text, ends[0])
     if start == end:
         raise InputError(f"{option} {text} goes nowhere; give two different numbers")
-    return name, start, end
+    return Way(name, start, end)
 
 
-def parse_steps(option: str, text: str) -> tuple[str, tuple[float, ...]]:
-    """Return the parameter and the values of ``load.force=0:60:0.5``.
+def _way_of_values(option: str, text: str, name: str, interval: str) -> Way:
+    first, _, rest = interval.partition(":")
+    if first.strip() == "onset":
+        raise InputError(
+            f"{option} {text} counts values from an onset, which is not known yet; write"
+            f" {name}=onset:{rest.partition(':')[0].strip()}, or give a number to start at"
+        )
+    values = parse_values(f"{option} {name}", interval)
+    check_one_way(f"{option} {text}", values)
+    if len(values) == 1:
+        raise InputError(f"{option} {text} is one value; give at least two")
+    return Way(name, values[0], values[-1], values)
+
+
+def check_one_way(given: str, values: Sequence[float]) -> None:
+    """Refuse values that neither rise nor fall all along.
 
     Parameters
     ----------
-    option
-        Name of the option, for messages.
-    text
-        ``KEY=START:STOP:STEP``. The values run from START in steps of STEP up to STOP, which is
-        included if a step ends there; for a lower STOP the sign of STEP may be left out.
-
-    Returns
-    -------
-    str
-        Name of the parameter.
-    tuple of float
-        At least two values, exact in decimals, without round-off.
+    given
+        The option and its text, for the message.
+    values
+        The values in their order.
 
     Raises
     ------
     InputError
-        The parameter is missing, the rest is not three finite numbers, or STEP is 0, leads away
-        from STOP, or makes less than one step or too many.
+        Two neighbours are equal, or the values turn back.
     """
-    name, equals, interval = (part.strip() for part in text.partition("="))
-    parts = interval.split(":")
-    wrong = InputError(
-        f"{option} {text} has no 'KEY=START:STOP:STEP'; write it like load.force=0:60:0.5"
-    )
-    if not (name and equals and len(parts) == 3):
-        raise wrong
-    numbers = (_number(option, text, part, wrong) for part in parts)
-    # The shortest decimal representation of a number is the one that was written.
-    start, stop, step = (Decimal(repr(number)) for number in numbers)
-    count = _steps_between(f"{option} {text}", start, stop, step)
-    step = abs(step) if stop > start else -abs(step)
-    return name, tuple(float(start + number * step) for number in range(count + 1))
-
-
-def _steps_between(given: str, start: Decimal, stop: Decimal, step: Decimal) -> int:
-    if start == stop:
-        raise InputError(f"{given} goes nowhere; give two different numbers to go between")
-    if step == 0:
-        raise InputError(f"{given} has a step of 0, which leads nowhere; give a step above 0")
-    if step < 0 and stop > start:
-        raise InputError(f"{given} has a step that leads away from {stop}; leave out its sign")
-    ratio = abs((stop - start) / step)
-    if ratio < 1:
-        raise InputError(f"{given} has a step longer than the whole way; give a shorter one")
-    if ratio >= MOST_STEPS + 1:
+    differences = np.diff(values)
+    for index in np.flatnonzero(differences * np.sign(values[-1] - values[0]) <= 0.0).tolist():
+        before, after = values[index : index + 2]
         raise InputError(
-            f"{given} takes more than {MOST_STEPS} steps; give a longer step or a shorter way"
+            f"{given} goes from {before:g} to {after:g}; give values that rise, or values that fall"
         )
-    return int(ratio)
 
 
 def parse_axis(option: str, text: str) -> tuple[str, tuple[float, ...]]:
@@ -160,7 +164,28 @@ def parse_axis(option: str, text: str) -> tuple[str, tuple[float, ...]]:
     return name, parse_values(f"{option} {name}", values)
 
 
-def _number(option: str, text: str, part: str, wrong: InputError | None = None) -> float:
+def is_whole(text: str) -> bool:
+    """Return True for a whole number without a sign, a decimal point or an exponent."""
+    return text.strip().isascii() and text.strip().isdigit()
+
+
+def number_in(option: str, text: str, part: str, wrong: InputError | None = None) -> float:
+    """Return the finite number that a part of an option's text is.
+
+    Parameters
+    ----------
+    option, text
+        Name and text of the option, for messages.
+    part
+        The part.
+    wrong
+        Error for a part that is no number; by default, that the text is no range.
+
+    Raises
+    ------
+    InputError
+        The part is no number, or not a finite one.
+    """
     try:
         value = float(part)
     except ValueError:

@@ -151,9 +151,9 @@ FIND: Keys = {
     "errors": Named(UNITLESS),
     "sensitivities": _SENSITIVITIES,
 }
-FOLLOW: Keys = {
+_BRANCH: Keys = {
     **EVERY,
-    **plain("reason", "parameter", "birth", "figure"),
+    **plain("reason", "residual", "parameter", "birth", "figure"),
     "onset": FORCE,
     "units": _NAMES,
     "points": {
@@ -168,17 +168,16 @@ FOLLOW: Keys = {
         **plain("kind", "value", "error", "stability", "not_converged"),
         **_REFERENCE,
         "force_in": _FURTHER,
-        "frequency": FREQUENCY,
-        "second_frequency": FREQUENCY,
+        **dict.fromkeys(("frequency", "second_frequency"), FREQUENCY),
     },
 }
+FOLLOW: Keys = {**_BRANCH, "branches": {**_BRANCH, **plain("kind")}}
 _THRESHOLD: Keys = {
     **plain("threshold", "reason", "bifurcation"),
     **_REFERENCE,
     **dict.fromkeys(("value", "error", "solver_error", "searched_to"), FORCE),
     "force_in": _FURTHER,
-    "frequency": FREQUENCY,
-    "second_frequency": FREQUENCY,
+    **dict.fromkeys(("frequency", "second_frequency"), FREQUENCY),
 }
 THRESHOLD: Keys = {
     **EVERY,
@@ -226,6 +225,7 @@ PLOT: Keys = {
     "verdicts": Named(UNITLESS),
     **_REFERENCE,
     "borders": Named({PARAMETER: UNITLESS, "force": FORCE, "error": FORCE, **plain("reason")}),
+    "at": {PARAMETER: UNITLESS},
     "disagreements": {PARAMETER: UNITLESS, **plain("try", "verdict", "sentence", "near")},
     "basins": {
         PARAMETER: UNITLESS,

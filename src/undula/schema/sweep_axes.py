@@ -64,32 +64,27 @@ def varied(store: xr.Dataset) -> tuple[str, ...]:
 
 
 def chosen(store: xr.Dataset, place: Mapping[str, float]) -> xr.Dataset:
-    """Return the part of a store at given values of some of its axes.
+    """Return the part of a store nearest to given values of some of its axes.
 
     Parameters
     ----------
     store
         A stored sweep.
     place
-        Value by name of axis, matched to a relative accuracy of 1e-6; the axis keeps this value
-        alone.
+        Finite value by name of axis; the axis keeps its nearest value alone, of two equally near
+        ones the first.
 
     Raises
     ------
     InputError
-        The store has no such axis, or the axis no such value.
+        The store has no such axis.
     """
     for name, value in place.items():
         if name not in axes_of(store):
             axes = ", ".join(axes_of(store))
             raise InputError(f"{name} is no axis of the store; take one of {axes}")
-        values = store[name].values
-        # People write values with fewer digits than are stored.
-        matches = np.flatnonzero(np.isclose(values, value, rtol=1e-6, atol=0.0))
-        if not matches.size:
-            listed = ", ".join(f"{stored:g}" for stored in values)
-            raise InputError(f"{name} = {value:g} is no value of the store; take one of {listed}")
-        store = store.isel({name: matches[:1]})
+        nearest = np.argmin(np.abs(store[name].values - value))
+        store = store.isel({name: [int(nearest)]})
     return store
 
 

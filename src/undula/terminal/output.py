@@ -4,8 +4,10 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
+from undula.errors import InputError
 from undula.terminal.streams import Guarded, err, out
 
 #: Exit status of every command.
@@ -31,6 +33,25 @@ class Answer:
 
     answer: dict[str, Any]
     text: str
+
+
+class Form(Enum):
+    """The form of an answer on standard output."""
+
+    TEXT, JSON, CSV = "text", "JSON", "CSV"
+
+
+def answer_form(*, as_json: bool, as_csv: bool) -> Form:
+    """Return the form of an answer that two options ask for.
+
+    Raises
+    ------
+    InputError
+        Both are given.
+    """
+    if as_json and as_csv:
+        raise InputError("--json and --csv are two forms of the answer; leave one of them out")
+    return Form.JSON if as_json else Form.CSV if as_csv else Form.TEXT
 
 
 def reply(answer: JsonAnswer, text: str, *, as_json: bool) -> None:

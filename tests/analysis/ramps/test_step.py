@@ -30,7 +30,7 @@ from undula.analysis.runs.last_period import SHAPES
 from undula.app.cli import main
 from undula.app.commands import step as stepping
 from undula.inputs.ramp_input import read_ramp_input
-from undula.inputs.ranges import parse_steps
+from undula.inputs.ramp_values import parse_ramp
 from undula.models.chain import Chain
 from undula.models.filament import Filament
 from undula.models.initial_states import kicked, planar, straight
@@ -68,32 +68,74 @@ def same_but_for_seconds(one: xr.Dataset, other: xr.Dataset) -> None:
 
 # ---------------------------------------------------------------- values
 
+NO_RANGE = (
+    "has no 'KEY=START:STOP:COUNT'; write it like load.force=0:60:121, or load.force=0:60:0.5 for"
+    " steps of 0.5"
+)
+
 
 @pytest.mark.parametrize(
     ("text", "values"),
     [
         ("0:0.3:0.1", (0.0, 0.1, 0.2, 0.3)),
-        ("0:10:3", (0.0, 3.0, 6.0, 9.0)),
+        ("0:10:3.0", (0.0, 3.0, 6.0, 9.0)),
         ("2:1:0.5", (2.0, 1.5, 1.0)),
         ("2:1:-0.5", (2.0, 1.5, 1.0)),
         ("-1:1e0:1", (-1.0, 0.0, 1.0)),
     ],
 )
 def test_values_are_the_decimals_that_one_would_write(text: str, values: tuple[float, ...]) -> None:
-    assert parse_steps("--along", f" load.slope = {text}") == ("load.slope", values)
+    assert parse_ramp("--along", f" load.slope = {text}")[:2] == ("load.slope", values)
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("0:10:3", (0.0, 5.0, 10.0)),
+        ("0:6:7", (0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)),
+        ("2:1:2", (2.0, 1.0)),
+        ("0,1,7", (0.0, 1.0, 7.0)),
+        ("7,1", (7.0, 1.0)),
+        ("75", (75.0,)),
+    ],
+)
+def test_a_whole_third_number_is_a_number_of_values_and_a_list_is_one(
+    text: str, values: tuple[float, ...]
+) -> None:
+    assert parse_ramp("--along", f"load.force={text}")[:2] == ("load.force", values)
+
+
+@pytest.mark.parametrize(
+    ("text", "remark"),
+    [
+        ("0:60:20", "takes 20 values; for steps of that size write load.force=0:60:20.0"),
+        ("0:60:1", "takes steps of 1; a later version may not, write load.force=0:60:1.0"),
+        ("0:60:20.0", None),
+        ("0:60:121", None),  # too long for a step
+        ("0:6:3", None),  # in both ways the same
+        ("0,20,60", None),
+    ],
+)
+def test_a_text_that_was_once_read_in_another_way_gets_a_remark(
+    text: str, remark: str | None
+) -> None:
+    said = parse_ramp("--along", f"load.force={text}").remark
+    assert said == (remark and f"--along load.force={text} {remark}")
 
 
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("load.force", "has no 'KEY=START:STOP:STEP'; write it like load.force=0:60:0.5"),
-        ("load.force=0:60", "has no 'KEY=START:STOP:STEP'; write it like load.force=0:60:0.5"),
-        ("=0:60:1", "has no 'KEY=START:STOP:STEP'; write it like load.force=0:60:0.5"),
-        ("load.force=0:6:x", "has no 'KEY=START:STOP:STEP'; write it like load.force=0:60:0.5"),
+        ("load.force", NO_RANGE),
+        ("=0:60:1", NO_RANGE),
+        ("load.force=0:6:x", NO_RANGE),
+        ("load.force=0,1,0.5", "goes from 1 to 0.5; give values that rise, or values that fall"),
+        ("load.force=1,1", "goes from 1 to 1; give values that rise, or values that fall"),
+        ("load.force=3:3:4", "goes from 3 to 3; give values that rise, or values that fall"),
         ("load.force=3:3:1", "goes nowhere; give two different numbers to go between"),
-        ("load.force=0:6:0", "has a step of 0, which leads nowhere; give a step above 0"),
+        ("load.force=0:6:0.0", "has a step of 0, which leads nowhere; give a step above 0"),
         ("load.force=0:6:-1", "has a step that leads away from 6.0; leave out its sign"),
-        ("load.force=0:6:7", "has a step longer than the whole way; give a shorter one"),
+        ("load.force=0:6:7.0", "has a step longer than the whole way; give a shorter one"),
         (
             "load.force=0:1:9.999e-5",
             "takes more than 10000 steps; give a longer step or a shorter way",
@@ -101,17 +143,17 @@ def test_values_are_the_decimals_that_one_would_write(text: str, values: tuple[f
     ],
 )
 def test_what_makes_no_steps_is_refused(text: str, why: str) -> None:
-    assert complaint(lambda: parse_steps("--along", text)) == f"--along {text} {why}"
+    assert complaint(lambda: parse_ramp("--along", text)) == f"--along {text} {why}"
 
 
 @pytest.mark.parametrize("text", ["nan:6:1", "0:inf:1", "0:6:nan", "0:6:1e400"])
 def test_a_number_that_is_not_finite_is_named(text: str) -> None:
-    told = complaint(lambda: parse_steps("--along", f"load.force={text}"))
+    told = complaint(lambda: parse_ramp("--along", f"load.force={text}"))
     assert told.endswith("is not a finite number; give one")
 
 
 def test_ten_thousand_steps_are_not_too_many() -> None:
-    assert len(parse_steps("--along", "load.force=0:1:1e-4")[1]) == 10_001
+    assert len(parse_ramp("--along", "load.force=0:1:1e-4")[1]) == 10_001
 
 
 def test_the_way_back_goes_through_the_same_values() -> None:
@@ -308,7 +350,7 @@ def test_thresholds_stand_beside_the_nearest_change(
 
 
 def test_thresholds_are_forces_only(ask: Ask) -> None:
-    words = ["step", *TWO, "--along", "model.drag_ratio=1:2:1", "--thresholds"]
+    words = ["step", *TWO, "--along", "model.drag_ratio=1:2:2", "--thresholds"]
     assert refused(ask(*words)).startswith("--thresholds are values of load.force; step along that")
 
 
@@ -380,7 +422,7 @@ def test_an_interruption_before_the_first_step_leaves_nothing(
 def test_what_is_stored_is_read_bit_for_bit(series: xr.Dataset, folder: Path) -> None:
     steps = stored_steps(series)
     assert all(isinstance(step.verdict, str) and type(step.value) is float for step in steps)
-    job_series = stepping.plan(
+    job_series, _ = stepping.plan(
         read_ramp_input(None, [TWO[1], TWO[3]]), THROUGH[1], back=True, kick=1e-3, seed=1
     )
     stepping.write_ramp(Path("copy.nc"), job_series, steps)
@@ -443,7 +485,7 @@ def test_a_file_that_holds_no_steps_is_refused_and_can_be_replaced(ask: Ask, fol
         assert told.startswith(f"{path} {why}; ")
         assert told.endswith("or start afresh with --overwrite")
         assert path.read_bytes() == content
-    short = ["step", *TWO, "--along", "load.force=1:2:1", "--overwrite", "--out", "other"]
+    short = ["step", *TWO, "--along", "load.force=1:2:2", "--overwrite", "--out", "other"]
     assert ask(*short)[0] == 0
     assert load_ramp(path).sizes["step"] == 2
 
@@ -455,7 +497,7 @@ def test_a_folder_that_cannot_be_written_is_told_at_once(ask: Ask) -> None:
 
 
 def test_bad_input_is_one_object_too(ask: Ask) -> None:
-    found = answer(ask("step", *TWO, "--along", "model.links=1:4:1", "--json"), status=2)
+    found = answer(ask("step", *TWO, "--along", "model.links=1:4:4", "--json"), status=2)
     assert found["status"] == "bad input"
     assert "nothing can be followed along model.links" in found["error"]
 

@@ -20,8 +20,9 @@ from undula.analysis.solvers.thresholds import threshold_curve
 from undula.analysis.states.records import Spinning
 from undula.analysis.states.relative_equilibrium import TurningShape
 from undula.app.commands import follow as following
-from undula.app.commands.follow import ParameterInterval, follow_along
+from undula.app.commands.follow import follow_along
 from undula.errors import InputError
+from undula.inputs.ranges import Way
 from undula.models.chain import Chain
 from undula.models.filament import Filament
 from undula.models.loads.analytic import LinearLoad, PointLoad, TipLoad
@@ -78,7 +79,7 @@ def told(body: Any, kind: str, parameter: str, start: float, end: float) -> str:
     """Return how following ended, having checked that all states are of one size."""
     try:
         answer, branch = follow_along(
-            body, kind, ParameterInterval(parameter, start, end), converge=False, title="a body"
+            body, kind, Way(parameter, start, end), converge=False, title="a body"
         )
     except InputError:
         return "refused"
@@ -131,7 +132,7 @@ def test_what_is_no_state_of_a_held_body_is_refused_before_anything_runs(
         monkeypatch.setattr(module, "kind_by_name", lambda _: Kind(*[never] * 5))
     told = complaint(
         lambda: follow_along(
-            BODIES["tip"], kind, ParameterInterval(parameter, start, end), converge=False, title=""
+            BODIES["tip"], kind, Way(parameter, start, end), converge=False, title=""
         )
     )
     assert parameter in told

@@ -1,6 +1,7 @@
 """Branch of straight states along a parameter: growth rates and Hopf points."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -81,3 +82,35 @@ def follow_straight(model: Model, parameter: str, start: float, to: float) -> St
     frequencies = np.abs(sigma.imag) / (2.0 * np.pi)
     links = model.links if method == "discrete" else None
     return StraightBranch(parameter, values, sigma.real, frequencies, tuple(hopf), links)
+
+
+def straight_at_values(
+    model: Model, branch: StraightBranch, values: Sequence[float]
+) -> StraightBranch:
+    """Return a branch of straight states at chosen values in place of its own.
+
+    Parameters
+    ----------
+    model : Model
+        Model of the branch.
+    branch : StraightBranch
+        The branch; its Hopf points stay.
+    values : sequence of float
+        Values of the parameter, in their order.
+
+    Returns
+    -------
+    StraightBranch
+    """
+    ends = [changed(model, branch.parameter, float(end)) for end in branch.values[[0, -1]]]
+    method = method_for_all(ends)
+    sigma = np.array(
+        [
+            spectrum(changed(model, branch.parameter, value), count=1, method=method).values[0]
+            for value in values
+        ]
+    )
+    frequencies = np.abs(sigma.imag) / (2.0 * np.pi)
+    return replace(
+        branch, values=np.array(values, dtype=float), rates=sigma.real, frequencies=frequencies
+    )

@@ -145,17 +145,22 @@ def draw_straight(
     save_figure(growth_figure(growth, title=title, units=units), path, claim)
 
 
-def draw_branch(
-    branch: Branch[Any], runs: Sequence[xr.Dataset], path: Path, claim: Claim, *, title: str
+def draw_branches(
+    branches: Sequence[Branch[Any]],
+    runs: Sequence[xr.Dataset],
+    path: Path,
+    claim: Claim,
+    *,
+    title: str,
 ) -> None:
-    """Draw a branch of states, with stored runs as dots, into a file.
+    """Draw branches of states, with stored runs as dots, into a file.
 
     Raises
     ------
     InputError
         The file cannot be written.
     """
-    save_figure(bifurcation_diagram([branch], title=title, runs=runs), path, claim)
+    save_figure(bifurcation_diagram(branches, title=title, runs=runs), path, claim)
 
 
 def draw_thresholds(

@@ -1,51 +1,41 @@
 """`undula follow`: a branch of states along a parameter, in plain JSON types and as text."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from undula.analysis.linear.straight_branch import StraightBranch, follow_straight
+from undula.analysis.linear.straight_branch import (
+    StraightBranch,
+    follow_straight,
+    straight_at_values,
+)
 from undula.analysis.parameters import FORCE, changed, value_of
 from undula.analysis.solvers.branches import follow, follow_from_onset
 from undula.analysis.solvers.refind import limit_of
 from undula.analysis.solvers.state_kinds import kind_by_name
+from undula.analysis.solvers.states_at_values import states_at_values
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.branch import Bifurcation, Branch
 from undula.analysis.states.branch_json import bifurcation_as_json, points_as_json
 from undula.analysis.states.extrapolation import Converged, links_are_body
 from undula.analysis.states.not_found import NotFound
 from undula.app.commands.find import not_found
+from undula.app.commands.follow_text import branch_text
 from undula.errors import InputError
+from undula.inputs.ranges import Way
 from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.units import Units
-from undula.terminal.numbers import BODY, CURE, LINKS, with_error_of
+from undula.terminal.numbers import BODY, LINKS
 from undula.terminal.output import Answer
 from undula.terminal.progress import approached
-from undula.terminal.units_text import force_in, units_lines
+from undula.terminal.units_text import force_in
 
-
-@dataclass(frozen=True)
-class ParameterInterval:
-    """The interval of a parameter along which a state is followed.
-
-    Attributes
-    ----------
-    parameter : str
-        Its name.
-    start : float or None
-        The first value; None for the onset.
-    end : float
-        The last value.
-    """
-
-    parameter: str
-    start: float | None
-    end: float
+# Statuses of one branch; several have the first one that any of them has.
+_WORST_FIRST = ("interrupted", "not found", "stopped early", "done")
 
 
 def follow_along(
-    model: Model, kind: str, interval: ParameterInterval, *, converge: bool, title: str
+    model: Model, kind: str, way: Way, *, converge: bool, title: str
 ) -> tuple[Answer, Branch[Any] | StraightBranch | None]:
     """Follow a state along a parameter.
 
@@ -55,8 +45,8 @@ def follow_along(
         The model; its own value of the parameter is not used.
     kind : str
         Kind of state, or "straight".
-    interval : ParameterInterval
-        The parameter, and its first and last value.
+    way : Way
+        The parameter with its first and last value, and the values to answer for.
     converge : bool
         If true, extrapolate bifurcations to the limit of many links.
     title : str
@@ -72,54 +62,103 @@ def follow_along(
     InputError
         There is no such kind or parameter, or a value is out of its range.
     """
-    value_of(model, interval.parameter)
+    value_of(model, way.parameter)
     if kind == "straight":
-        return _straight(model, interval, converge=converge, title=title)
+        return _straight(model, way, converge=converge, title=title)
     with interruptible() as interrupted:
-        if interval.start is None:
-            branch = _from_onset(model, kind, interval, interrupted)
+        if way.start is None:
+            branch = _from_onset(model, kind, way, interrupted)
         else:
-            branch = _between(model, kind, interval, interval.start, interrupted)
+            branch = _between(model, kind, way, way.start, interrupted)
         early = interrupted()
     if isinstance(branch, NotFound):
         return not_found(branch, f"{title}: {kind}", model.units), None
-    answer = branch_answer(branch, model.units, converge=converge and not early)
+    shown = branch if early or way.values is None else _at_values(branch, kind, way.values)
+    answer = branch_answer(shown, model.units, converge=converge and not early)
     if early:
         answer["status"] = "interrupted"
-    return _with_text(answer, f"{title}: {kind}", model.units), branch
+    return branch_text(answer, f"{title}: {kind}", model.units), branch
+
+
+def follow_kinds(
+    model: Model, kinds: Sequence[str], way: Way, *, converge: bool, title: str
+) -> tuple[Answer, list[Any]]:
+    """Follow states of one kind or of several kinds along a parameter.
+
+    Parameters
+    ----------
+    model, way, converge, title
+        As for `follow_along`.
+    kinds : sequence of str
+        The kinds, at least one; each of several has its own answer in the list `branches`.
+
+    Returns
+    -------
+    tuple of Answer and list
+        Branches of the kinds for which there was a state to begin at.
+
+    Raises
+    ------
+    InputError
+        As for `follow_along`.
+    """
+    answers, branches = {}, []
+    for kind in kinds:
+        answers[kind], branch = follow_along(model, kind, way, converge=converge, title=title)
+        branches += [] if branch is None else [branch]
+        if answers[kind].answer["status"] == "interrupted":
+            break
+    if len(kinds) == 1:
+        return answers[kinds[0]], branches
+    statuses = {answer.answer["status"] for answer in answers.values()}
+    several = {
+        "status": next(status for status in _WORST_FIRST if status in statuses),
+        "units": model.units.names(),
+        "parameter": way.parameter,
+        "branches": [{"kind": kind} | answer.answer for kind, answer in answers.items()],
+    }
+    return Answer(several, "\n\n".join(answer.text for answer in answers.values())), branches
 
 
 def _straight(
-    model: Model, interval: ParameterInterval, *, converge: bool, title: str
+    model: Model, way: Way, *, converge: bool, title: str
 ) -> tuple[Answer, StraightBranch]:
     if converge:
         raise InputError("the straight state is converged already; leave --converge out")
-    if interval.start is None:
+    if way.start is None:
         raise InputError("the straight state ends at its onset; give a number to start at")
-    straight = follow_straight(model, interval.parameter, interval.start, interval.end)
-    answer = straight_answer(straight, model)
-    return _with_text(answer, f"{title}: straight state", model.units), straight
+    straight = follow_straight(model, way.parameter, way.start, way.end)
+    shown = straight
+    if way.values is not None:
+        shown = straight_at_values(model, straight, way.values)
+    answer = straight_answer(shown, model)
+    return branch_text(answer, f"{title}: straight state", model.units), straight
 
 
 def _from_onset(
-    model: Model, kind: str, interval: ParameterInterval, stop: Callable[[], bool]
+    model: Model, kind: str, way: Way, stop: Callable[[], bool]
 ) -> Branch[Any] | NotFound:
-    if interval.parameter != FORCE:
-        raise InputError(f"an onset is a value of {FORCE}; start {interval.parameter} at a number")
-    with approached(f"following {kind}", 0.0, interval.end) as progress:
-        return follow_from_onset(model, kind, interval.end, progress=progress, stop=stop)
+    if way.parameter != FORCE:
+        raise InputError(f"an onset is a value of {FORCE}; start {way.parameter} at a number")
+    with approached(f"following {kind}", 0.0, way.end) as progress:
+        return follow_from_onset(model, kind, way.end, progress=progress, stop=stop)
 
 
 def _between(
-    model: Model, kind: str, interval: ParameterInterval, start: float, stop: Callable[[], bool]
+    model: Model, kind: str, way: Way, start: float, stop: Callable[[], bool]
 ) -> Branch[Any] | NotFound:
     chosen = kind_by_name(kind)
-    along = model_along(model, kind, interval.parameter, (start, interval.end))
-    state = chosen.find(changed(along, interval.parameter, start))
+    along = model_along(model, kind, way.parameter, (start, way.end))
+    state = chosen.find(changed(along, way.parameter, start))
     if isinstance(state, NotFound):
         return state
-    with approached(f"following {kind}", start, interval.end) as progress:
-        return follow(state, interval.parameter, interval.end, progress=progress, stop=stop)
+    with approached(f"following {kind}", start, way.end) as progress:
+        return follow(state, way.parameter, way.end, progress=progress, stop=stop)
+
+
+def _at_values(branch: Branch[Any], kind: str, values: Sequence[float]) -> Branch[Any]:
+    with approached(f"{kind} at {len(values)} values", values[0], values[-1]) as progress:
+        return states_at_values(branch, values, progress=progress)
 
 
 def branch_answer(branch: Branch[Any], units: Units, *, converge: bool) -> dict[str, Any]:
@@ -196,39 +235,3 @@ def _bifurcation_answer(
 def _with_force(bifurcation: dict[str, Any], units: Units) -> dict[str, Any]:
     """Return a bifurcation, with its force in further units if it is a value of the force."""
     return bifurcation | force_in(units, bifurcation.get(FORCE))
-
-
-def _with_text(answer: dict[str, Any], title: str, units: Units) -> Answer:
-    name = answer["parameter"]
-    first, last = answer["points"][0], answer["points"][-1]
-    lines = [
-        f"{title} along {name} from {first[name]:.6g} to {last[name]:.6g},"
-        f" {len(answer['points'])} points, {answer['status']}",
-        *units_lines(answer["units"], units.forces if name == FORCE else ()),
-        f"  {name:>16} {'frequency':>12} {'leading rate':>13}",
-        *(
-            f"  {point[name]:>16.8g} {point['frequency']:>12.7g} {point['leading_rate']:>13.5g}"
-            f"  {'stable' if point['stable'] else 'unstable'}"
-            for point in answer["points"]
-        ),
-        *(_bifurcation_line(point, units) for point in answer["bifurcations"]),
-        *([f"  born {answer['birth']}ly at the onset"] if "birth" in answer else []),
-    ]
-    return Answer(answer, "\n".join(lines))
-
-
-def _bifurcation_line(point: dict[str, Any], units: Units) -> str:
-    further = "force_in" in point
-    unit = units.force if further else ""
-    place = f"{point['value']:.10g} {unit}".rstrip()
-    if point["error"] is not None or point["error_of"] == LINKS:
-        cure = "" if "not_converged" in point else CURE
-        place = with_error_of(point["value"], point["error"], point, unit, cure).rstrip()
-    place += units.bracketed(point["value"]) if further else ""
-    second = point["second_frequency"]
-    second_text = f", second frequency {second:.6g}" if second is not None else ""
-    stability = f", stability {point['stability']}" if "stability" in point else ""
-    unconverged = f" (not converged: {point['not_converged']})" if "not_converged" in point else ""
-    frequency = f"{point['frequency']:.7g} cycles per T"
-    further_text = f"{second_text}{stability}{unconverged}"
-    return f"  {point['kind']} at {place}: {frequency}{further_text}"

@@ -1,5 +1,6 @@
 """`undula plot` of a stored sweep: diagram, gallery, paths or basins, and solved boundaries."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +21,14 @@ from undula.inputs.ranges import parse_axis
 from undula.schema.sweep_axes import REPLICATE, chosen, varied
 from undula.storage.outputs import Claim, claimed
 from undula.sweeps.store import load_sweep
-from undula.terminal.output import DONE, STOPPED_EARLY, reply
+from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
 from undula.views import basin_diagram, gallery, mean_paths, phase_diagram, phase_page
 
 #: Figures of a sweep.
 VIEWS = ("diagram", "gallery", "paths", "basins")
 _PAGE = ".html"
+# Relative difference up to which a chosen value is a stored one, written with fewer digits.
+_SAME = 1e-6
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class PlotRequest:
     out
         File of the figure or page; None for a figure next to the store.
     places
-        Values of axes, each as ``KEY=VALUE``.
+        Values of axes, each as ``KEY=VALUE``; the nearest stored value is drawn.
     boundaries
         If true, stability boundaries are solved for, drawn and compared with the runs.
     overwrite
@@ -73,6 +76,9 @@ def plot_sweep(path: Path, request: PlotRequest, *, as_json: bool) -> int:
         _draw(store, request.view, boundaries, contradicting, figure, claim)
     shares = basins(store) if store.sizes[REPLICATE] > 1 else None
     answer = diagram_answer(store, boundaries, contradicting, shares) | {"figure": str(figure)}
+    if request.places:
+        names = [_chosen_value(text)[0] for text in request.places]
+        answer["at"] = {name: float(store[name].values[0]) for name in names}
     reply(answer, diagram_text(answer), as_json=as_json)
     return DONE
 
@@ -96,6 +102,10 @@ def _part(path: Path, request: PlotRequest, *, with_shapes: bool) -> xr.Dataset:
     """Return the selected part of a sweep, in memory."""
     place = dict(_chosen_value(text) for text in request.places)
     store = chosen(load_sweep(path, shapes=with_shapes), place).load()
+    for name, value in place.items():
+        taken = float(store[name].values[0])
+        if not math.isclose(taken, value, rel_tol=_SAME):
+            notice(f"{path} has no {name} = {value:g}; {taken:g}, the nearest value, is drawn")
     if len(varied(store)) > 2:
         several = ", ".join(varied(store))
         raise InputError(

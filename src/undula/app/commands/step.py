@@ -12,10 +12,11 @@ from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.solvers.thresholds import THRESHOLDS, single_threshold
 from undula.app.commands.drawing import beside, save_figure
 from undula.app.commands.step_text import step_answer, step_text
+from undula.app.commands.tables import ramp_table
 from undula.errors import InputError
 from undula.inputs.build import build_model, build_schedule, build_start
 from undula.inputs.input import RunInput
-from undula.inputs.ranges import parse_steps
+from undula.inputs.ramp_values import parse_ramp
 from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.storage.outputs import Claim, claimed
@@ -28,7 +29,7 @@ from undula.storage.ramp_file import (
     write_ramp,
 )
 from undula.terminal.compile_notice import compilation_announced
-from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
+from undula.terminal.output import DONE, STOPPED_EARLY, Form, notice, reply
 from undula.terminal.progress import searching, stepped
 from undula.views import ramp_diagram
 
@@ -60,6 +61,8 @@ class RampJob:
         If true, an existing file is replaced instead of continued.
     with_thresholds
         If true, thresholds of the force are solved for.
+    remark
+        A sentence on the values, for standard error.
     """
 
     wanted: RunInput
@@ -68,17 +71,20 @@ class RampJob:
     reads: Sequence[Path]
     overwrite: bool
     with_thresholds: bool
+    remark: str | None = None
 
 
-def plan(wanted: RunInput, along: str, *, back: bool, kick: float, seed: int) -> Series:
-    """Return the ramp of an input.
+def plan(
+    wanted: RunInput, along: str, *, back: bool, kick: float, seed: int
+) -> tuple[Series, str | None]:
+    """Return the ramp of an input, and a remark on the text of its values.
 
     Parameters
     ----------
     wanted
         The checked input.
     along
-        ``KEY=START:STOP:STEP``.
+        ``KEY=START:STOP:COUNT``, a list, or ``KEY=START:STOP:STEP``.
     back
         If true, the ramp returns through the same values.
     kick
@@ -91,23 +97,24 @@ def plan(wanted: RunInput, along: str, *, back: bool, kick: float, seed: int) ->
     InputError
         The parameter, one of its values or the kick is wrong.
     """
-    course = Ramp(*parse_steps("--along", along), back=back, kick=kick, seed=seed)
+    parameter, values, remark = parse_ramp("--along", along)
+    course = Ramp(parameter, values, back=back, kick=kick, seed=seed)
     model = build_model(wanted)
     course.models(model)
-    return Series(wanted.dump(), wanted.describe({course.parameter}), model, course)
+    return Series(wanted.dump(), wanted.describe({course.parameter}), model, course), remark
 
 
-def run_ramp(job: RampJob, *, budget: float, as_json: bool) -> int:
+def run_ramp(job: RampJob, form: Form, *, budget: float) -> int:
     """Compute the missing steps of a ramp, store and draw all steps, and answer.
 
     Parameters
     ----------
     job
         The ramp.
+    form
+        Form of the answer.
     budget
         Wall time after which the ramp is stopped [s].
-    as_json
-        If true, the answer is JSON.
 
     Returns
     -------
@@ -135,6 +142,8 @@ def run_ramp(job: RampJob, *, budget: float, as_json: bool) -> int:
         overwrite=job.overwrite,
         reads=job.reads,
     ) as claim:
+        if job.remark:
+            notice(job.remark)
         steps = [] if job.overwrite or not job.result.exists() else _stored(job)
         with interruptible() as interrupted:
             status, thresholds = _compute(job, steps, budget, interrupted), None
@@ -144,7 +153,8 @@ def run_ramp(job: RampJob, *, budget: float, as_json: bool) -> int:
     answer = step_answer(job.series, steps, thresholds)
     answer |= {"status": status, "store": str(job.result) if steps else None, "figure": drawn}
     complete = _report_failures(job, status, steps) and drawn is not None
-    reply(answer, step_text(job.series, answer), as_json=as_json)
+    text = ramp_table(answer) if form is Form.CSV else step_text(job.series, answer)
+    reply(answer, text, as_json=form is Form.JSON)
     return DONE if complete else STOPPED_EARLY
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from undula.app.commands.sweep_text import sweep_answer, sweep_text
+from undula.app.commands.tables import sweep_table
 from undula.errors import InputError
 from undula.sweeps.compute import compute
 from undula.sweeps.own_workers import workers_that_fit
@@ -14,7 +15,7 @@ from undula.sweeps.store import SweepStore, load_sweep, open_sweep
 from undula.sweeps.sweep import Sweep, read_sweep
 from undula.sweeps.work_queue import SweepWork
 from undula.terminal.compile_notice import compilation_announced
-from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
+from undula.terminal.output import DONE, STOPPED_EARLY, Form, notice, reply
 from undula.terminal.progress import swept
 
 #: Causes of an early end in words, by the status of the answer.
@@ -100,16 +101,18 @@ def run_sweep(
     return DONE if status == "done" and not work.failed else STOPPED_EARLY
 
 
-def report_status(path: Path, *, as_json: bool) -> int:
-    """Report the state of a stored sweep; return the exit status.
+def report_status(path: Path, form: Form) -> int:
+    """Report the state of a stored sweep, or all its points; return the exit status.
 
     Raises
     ------
     InputError
         The folder is not a store.
     """
-    answer = sweep_answer(load_sweep(path, shapes=False)) | {"store": str(path)}
-    reply(answer, sweep_text(answer), as_json=as_json)
+    stored = load_sweep(path, shapes=False)
+    answer = sweep_answer(stored) | {"store": str(path)}
+    text = sweep_table(stored) if form is Form.CSV else sweep_text(answer)
+    reply(answer, text, as_json=form is Form.JSON)
     return DONE
 
 

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from undula.inputs.input import ModelInput, SweepInput, read_tables
-from undula.inputs.ranges import parse_axis, parse_steps, parse_values, parse_way
+from undula.inputs.ramp_values import parse_ramp
+from undula.inputs.ranges import parse_axis, parse_values, parse_way
 from undula.inputs.sweep_table import AxisTable
 from undula.models.units import chain_units
 
@@ -142,11 +143,11 @@ def _swept(verb: str, options: Sequence[str]) -> dict[str, tuple[float, float]]:
             values = parse_values(option, text)
             swept[FORCE] = min(values), max(values)
         elif option == "--along" and verb == "follow":
-            name, start, end = parse_way(option, text)
+            name, start, end, _ = parse_way(option, text)
             # A branch that begins at the onset begins above 0.
             swept[name] = min(start or 0.0, end), max(start or 0.0, end)
         elif option == "--along":
-            name, values = (parse_steps if verb == "step" else parse_axis)(option, text)
+            name, values = (parse_ramp if verb == "step" else parse_axis)(option, text)[:2]
             swept[name] = min(values), max(values)
     return swept
 
