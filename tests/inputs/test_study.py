@@ -9,11 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from refusal import complaint
-from small_sweeps import AXES, QUICK, sweep_of
-from undula.inputs.input import parse_input, read_input
+from small_sweeps import AXES, QUICK, done, sweep_of
+from undula.inputs.input import RunInput, parse_input, read_input
 from undula.storage.differences import difference
 from undula.sweeps.chunk_grid import ChunkGrid, chunk_shape
 from undula.sweeps.sweep import sweep_from_dump
+from undula.views import phase_diagram
 
 RANDOM = QUICK + '[study]\npolicy = "random"\ntries = 3\n' + AXES
 
@@ -88,7 +89,88 @@ def test_a_run_of_a_file_with_a_study_is_its_base(tmp_path: Path) -> None:
     assert read_input(tmp_path / "study.toml").load.exponent == 1.0
 
 
+#: Every number of an input, with the choice that gives it a meaning and two values.
+NUMBERS = {
+    "model.segments": ("", "4, 6"),
+    "model.links": ('model.kind="chain"', "2, 3"),
+    "model.drag_ratio": ("", "1, 2.5"),
+    "model.tensile_stiffness": ('model.inextensibility="weak"', "3e4, 5e4"),
+    "model.base_spring": ('model.kind="chain"', "1, 2"),
+    "model.bead_drag": ('model.kind="chain"', "1, 2"),
+    "model.natural_curvature.k1": ("", "0, 2"),
+    "model.natural_curvature.k2": ("model.natural_curvature=[1.0, 0.0]", "-1, 1"),
+    "model.bending_ratio": ("", "1, 2"),
+    "model.twist_stiffness": ('model.twist="elastic"', "1, 2"),
+    "load.force": ("", "20, 30"),
+    "load.position": ('load.profile="point"', "0.5, 1"),
+    "load.slope": ('load.profile="linear"', "-1, 1"),
+    "load.exponent": ('load.profile="power"', "0, 2"),
+    "start.amplitude": ("", "0.01, 0.1"),
+    "start.seed": ("", "1, 2"),
+    "start.angle": ('start.shape="planar"', "0, 1.5"),
+    "time.until": ("", "0.1, 0.2"),
+    "time.limit": ('time.until="settled"', "1, 2"),
+    "time.samples": ("", "20, 40"),
+    "time.rtol": ("", "1e-6, 1e-4"),
+    "time.atol": ("", "1e-10, 1e-8"),
+}
+
+
+def test_every_number_of_an_input_is_tried_as_an_axis() -> None:
+    numbers = {
+        f"{table}.{key}"
+        for table, of in RunInput.model_fields.items()
+        for key, field in of.annotation.model_fields.items()
+        if isinstance(field.default, int | float) and not isinstance(field.default, bool)
+    }
+    assert numbers <= NUMBERS.keys()
+
+
+@pytest.mark.parametrize("key", NUMBERS)
+def test_every_number_of_an_input_can_be_an_axis(key: str, tmp_path: Path) -> None:
+    choice, values = NUMBERS[key]
+    text = f'[[study.axes]]\nkey = "{key}"\nvalues = [{values}]\n'
+    sweep = sweep_of(tmp_path, text, *([choice] if choice else []))
+    assert sweep_from_dump(json.loads(json.dumps(sweep.dump()))) == sweep
+    for number, value in enumerate(sweep.axes[0].values):
+        wanted = parse_input(sweep.tables(number))
+        table, name, *component = key.split(".")
+        stored = getattr(getattr(wanted, table), name)
+        assert (stored[("k1", "k2").index(component[0])] if component else stored) == value
+
+
+def test_a_component_of_the_natural_curvature_leaves_the_other_as_it_is(tmp_path: Path) -> None:
+    text = '[[study.axes]]\nkey = "model.natural_curvature.k1"\nvalues = [1, 2]\n'
+    sweep = sweep_of(tmp_path, text, "model.natural_curvature=[5.0, 3.0]")
+    pairs = [sweep.tables(number)["model"]["natural_curvature"] for number in (0, 1)]
+    assert pairs == [[1.0, 3.0], [2.0, 3.0]]
+    # The value in the file does not matter where an axis varies it.
+    other = sweep_of(tmp_path, text, "model.natural_curvature=[6.0, 3.0]")
+    assert difference(sweep.dump(), other.dump()) is None
+    both = text + '[[study.axes]]\nkey = "model.natural_curvature.k2"\nvalues = [0, 4]\n'
+    sweep = sweep_of(tmp_path, both)
+    assert sweep.tables(3)["model"]["natural_curvature"] == [2.0, 4.0]
+
+
+def test_a_study_over_the_natural_curvature_is_done_and_drawn(tmp_path: Path) -> None:
+    text = QUICK + '[[study.axes]]\nkey = "model.natural_curvature.k1"\nvalues = [0, 2]\n'
+    store = done(sweep_of(tmp_path, text), tmp_path / "s.zarr")
+    assert (store["status"].values == 1).all()
+    assert store["model.natural_curvature.k1"].values.tolist() == [0.0, 2.0]
+    assert store["energy_max"].values[0, 0] != store["energy_max"].values[1, 0]
+    assert phase_diagram(store).axes
+
+
 REFUSED = {
+    "a component of a table": (
+        '[[study.axes]]\nkey = "model.natural_curvature.k1"\nvalues = [1, 2]\n'
+        "[model.natural_curvature]\ns = [0.0, 1.0]\nk1 = [1.0, 1.0]\nk2 = [0.0, 0.0]\n",
+        "model.natural_curvature is no pair of numbers; give two numbers, or leave out this axis",
+    ),
+    "a pair as a whole": (
+        AXES.replace("load.exponent", "model.natural_curvature"),
+        "model.natural_curvature = 0.5 is a decimal number",
+    ),
     "nothing varied": ("", "varies nothing; add a table [study] and [[study.axes]]"),
     "no such key": (
         AXES.replace("load.force", "load.forse"),

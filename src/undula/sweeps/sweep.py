@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
@@ -20,26 +20,8 @@ from undula.analysis.runs.memory_needed import refuse_too_large
 from undula.errors import InputError
 from undula.inputs.build import build_model, build_schedule, build_start
 from undula.inputs.input import RunInput, SweepInput, changed_tables, parse_input, read_tables
-from undula.inputs.messages import nearest
 from undula.inputs.sweep_table import MOST_POINTS, SweepTable
-
-Tables = Mapping[str, Mapping[str, Any]]
-
-
-@dataclass(frozen=True)
-class Axis:
-    """A key of the input and the values that it takes.
-
-    Attributes
-    ----------
-    key
-        Table and name, such as ``load.force``.
-    values
-        The values in their order.
-    """
-
-    key: str
-    values: tuple[int | float, ...]
+from undula.sweeps.axis_keys import Axis, Tables, axis_of, set_value, unvaried
 
 
 @dataclass(frozen=True)
@@ -107,8 +89,7 @@ class Sweep:
         """Return the input of a point as plain tables, in the form that ``undula run`` reads."""
         tables = {name: dict(table) for name, table in self.shared.items()}
         for axis, index in zip(self.axes, self.place(number), strict=False):
-            table, key = axis.key.split(".")
-            tables[table][key] = axis.values[index]
+            set_value(tables, axis.key, axis.values[index])
         if self.policy == "random":
             seed, amplitude = self._drawn(number)
             tables["start"] = {"shape": "kicked", "amplitude": amplitude, "seed": seed}
@@ -202,7 +183,7 @@ def sweep_from_dump(dumped: Mapping[str, Any]) -> Sweep:
 
 def _resolved_sweep(table: SweepTable, given: Tables) -> Sweep:
     """Return the checked sweep of a table ``[study]`` and of the other tables of its file."""
-    axes = tuple(_axis(axis.key, axis.resolved) for axis in table.axes)
+    axes = tuple(axis_of(axis.key, axis.resolved) for axis in table.axes)
     settings = {key: value for key, value in table.dump().items() if key != "axes"}
     settings = json.loads(json.dumps(settings))  # tuples become lists, as in a stored sweep
     draft = Sweep(settings, axes, given)
@@ -213,23 +194,6 @@ def _resolved_sweep(table: SweepTable, given: Tables) -> Sweep:
     _refuse_idle_starts(draft, given)
     _refuse_ragged_shapes(draft)
     return Sweep(settings, axes, _shared(draft))
-
-
-def _axis(key: str, values: Sequence[int | float]) -> Axis:
-    """Return an axis with its values in the type of its key."""
-    types = {
-        f"{table}.{name}": field.annotation
-        for table, of in RunInput.model_fields.items()
-        for name, field in getattr(of.annotation, "model_fields", {}).items()
-    }
-    if key not in types:
-        near = nearest(key, types)
-        cure = f"did you mean {near}?" if near else "take one such as load.force"
-        raise InputError(f"study.axes varies {key}, which is no key of a run; {cure}")
-    if int in (types[key], *get_args(types[key])):
-        whole = all(value == round(value) for value in values)
-        return Axis(key, tuple(int(value) for value in values) if whole else tuple(values))
-    return Axis(key, tuple(float(value) for value in values))
 
 
 def _refuse_ragged_shapes(sweep: Sweep) -> None:
@@ -265,15 +229,13 @@ def _shared(draft: Sweep) -> Tables:
     common: dict[str, dict[str, Any]] | None = None
     replicates = draft.shape[-1]
     for number in range(0, draft.count, replicates):
-        dumped = _checked(draft, number).dump()
+        dumped = unvaried(_checked(draft, number).dump(), draft.axes)
         if common is None:
             common = dumped
         for name, table in common.items():
             for key in [key for key in table if table[key] != dumped[name].get(key)]:
-                del table[key]  # an axis, or a default that depends on an axis
+                del table[key]  # a default that depends on an axis
     assert common is not None  # a sweep has at least one point
-    for name, key in (axis.key.split(".") for axis in draft.axes):
-        common[name].pop(key, None)
     if draft.policy == "random":
         common["start"] = {}
     return common

@@ -61,6 +61,10 @@ def _cells(
 
 
 def _unit(quantity: Any, units: Mapping[str, str]) -> str:
+    if isinstance(quantity, Mapping):
+        # Of a steady state, a single number stands in place of least, largest and mean value.
+        parts = set(quantity.values())
+        quantity = parts.pop() if len(parts) == 1 else None
     if quantity in (LENGTH, FORCE, ENERGY, FREQUENCY):
         return units[quantity]
     return _FIXED.get(quantity, "") if isinstance(quantity, str) else ""
