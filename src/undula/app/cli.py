@@ -167,11 +167,11 @@ def resume(
     """Go on where a run ended, in the same file; figure and movie are drawn anew."""
     from undula.app.commands.run_end import finish, views_of
     from undula.app.commands.run_job import resumed
+    from undula.app.commands.stored_files import RESUME, load_run_for
     from undula.storage.outputs import claimed
-    from undula.storage.run_file import load_result
 
     seconds = seconds_of(budget)
-    load_result(result)  # refuses other files before anything is made or locked
+    load_run_for(result, RESUME)  # refuses other files before anything is made or locked
     views = views_of(result, with_movie=not no_movie)
     with claimed(result, *views, renewed=views, continued=[result], overwrite=overwrite) as claim:
         job = resumed(result, until)

@@ -13,7 +13,7 @@ def plot(
     result: Annotated[
         Path,
         typer.Argument(
-            metavar="RESULT", parser=a_path, help="What undula run or undula sweep wrote."
+            metavar="RESULT", parser=a_path, help="What undula run, step or sweep wrote."
         ),
     ],
     out: Annotated[
@@ -38,7 +38,7 @@ def plot(
     overwrite: Overwrite = False,
     as_json: Json = False,
 ) -> int:
-    """Draw a stored run or a study of many runs, by default next to it as .png."""
+    """Draw a stored run, a ramp or a study of many runs, by default next to it as .png."""
     if result.is_dir():
         from undula.app.commands.plot_sweep import PlotRequest, plot_sweep
 
@@ -47,20 +47,21 @@ def plot(
     for option, given in (("--view", view != "diagram"), ("--at", at), ("--borders", boundaries)):
         if given:
             raise InputError(f"{option} is about studies, and {result} is none; leave it out")
-    return _plot_run(result, out, overwrite=overwrite, as_json=as_json)
+    return _plot_file(result, out, overwrite=overwrite, as_json=as_json)
 
 
-def _plot_run(result: Path, out: Path | None, *, overwrite: bool, as_json: bool) -> int:
-    """Draw the portrait of a stored run and answer; return the exit status."""
-    from undula.app.commands.drawing import draw_figure, figure_path
+def _plot_file(result: Path, out: Path | None, *, overwrite: bool, as_json: bool) -> int:
+    """Draw a stored run or a stored ramp and answer; return the exit status."""
+    from undula.app.commands.drawing import figure_path, save_figure
+    from undula.app.commands.stored_files import load_run_or_ramp
     from undula.storage.outputs import claimed
-    from undula.storage.run_file import load_result
     from undula.terminal.output import DONE, reply
+    from undula.views import portrait, ramp_diagram
 
-    path = figure_path(result, out)
-    stored, renewed = load_result(result), [path] if out is None else []
-    with claimed(path, renewed=renewed, overwrite=overwrite, reads=[result]) as claim:
-        draw_figure(stored, path, claim)
+    path, renewed = figure_path(result, out), out is None
+    stored, is_ramp = load_run_or_ramp(result)
+    with claimed(path, renewed=[path] * renewed, overwrite=overwrite, reads=[result]) as claim:
+        save_figure(ramp_diagram([stored]) if is_ramp else portrait(stored), path, claim)
     reply({"status": "done", "figure": str(path)}, str(path), as_json=as_json)
     return DONE
 
@@ -76,12 +77,12 @@ def movie(
 ) -> int:
     """Make the movie of a stored run, by default next to it as .mp4."""
     from undula.app.commands.drawing import draw_movie, movie_path
+    from undula.app.commands.stored_files import MOVIE, load_run_for
     from undula.storage.outputs import claimed
-    from undula.storage.run_file import load_result
     from undula.terminal.output import DONE, reply
 
     path = movie_path(result, out)
-    stored, renewed = load_result(result), [path] if out is None else []
+    stored, renewed = load_run_for(result, MOVIE), [path] if out is None else []
     with claimed(path, renewed=renewed, overwrite=overwrite, reads=[result]) as claim:
         draw_movie(stored, path, claim)
     reply({"status": "done", "movie": str(path)}, str(path), as_json=as_json)

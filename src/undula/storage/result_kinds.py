@@ -28,6 +28,22 @@ class Kind:
     command: str
 
 
+class OtherKindError(InputError):
+    """A result is of another kind than the expected one.
+
+    Parameters
+    ----------
+    sentence
+        The mistake and its cure.
+    name
+        Name of the format that the result carries, without its number.
+    """
+
+    def __init__(self, sentence: str, name: str) -> None:
+        super().__init__(sentence)
+        self.name = name
+
+
 RUN = Kind(RUN_FORMAT, "undula run")
 
 #: Attributes that hold JSON, in files of any kind.
@@ -61,8 +77,10 @@ def check_format(path: Path, kind: Kind, attributes: Mapping[str, Any]) -> None:
 
     Raises
     ------
+    OtherKindError
+        The file is a result of another kind.
     InputError
-        The file is not a result of this kind and format.
+        The file is no result, or one of another format.
     """
     written = attributes.get("undula_format")
     if written is None:
@@ -70,9 +88,10 @@ def check_format(path: Path, kind: Kind, attributes: Mapping[str, Any]) -> None:
             f"{path} was not written by undula; give a result file written by {kind.command}"
         )
     if str(written).split()[:1] != kind.format.split()[:1]:
-        raise InputError(
+        raise OtherKindError(
             f"{path} is a result of another command ({str(written)!r}); give a result file written"
-            f" by {kind.command}"
+            f" by {kind.command}",
+            str(written).partition(" ")[0],
         )
     if written != kind.format:
         raise InputError(

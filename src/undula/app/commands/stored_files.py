@@ -1,0 +1,70 @@
+"""Files of results by their kind: what a command reads, and the cure where it cannot use one."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import xarray as xr
+
+from undula.errors import InputError
+from undula.storage.ramp_file import STEPS, load_ramp
+from undula.storage.result_kinds import OtherKindError
+from undula.storage.run_file import load_result
+
+_RAMP = STEPS.format.split()[0]
+_SWEEP = "study"
+#: Kinds of results other than runs, in words.
+_NAMES = {_RAMP: "a ramp", _SWEEP: "a study of many runs"}
+#: Cures for results of other kinds, by the use that is made of a run.
+MOVIE = {
+    _RAMP: "which has no movie; undula plot draws it",
+    _SWEEP: 'which has no movie; undula plot draws it, and study.keep = "run" keeps its runs, below'
+    " runs/",
+}
+RESUME = {
+    _RAMP: "which the same undula step continues",
+    _SWEEP: "which the same undula sweep continues",
+}
+
+
+def load_run_for(path: Path, cures: Mapping[str, str]) -> xr.Dataset:
+    """Read a stored run; refuse other results with what can be done with them.
+
+    Parameters
+    ----------
+    path
+        The file.
+    cures
+        `MOVIE` or `RESUME`.
+
+    Raises
+    ------
+    InputError
+        The file is no stored run, or cannot be read.
+    """
+    try:
+        return load_result(path)
+    except OtherKindError as error:
+        if error.name not in cures:
+            raise
+        raise InputError(f"{path} is {_NAMES[error.name]}, {cures[error.name]}") from None
+
+
+def load_run_or_ramp(path: Path) -> tuple[xr.Dataset, bool]:
+    """Read a stored run or a stored ramp; return it, and True for a ramp.
+
+    Raises
+    ------
+    InputError
+        The file is neither, or cannot be read.
+    """
+    if path.suffix.lower() == ".json" and path.exists():
+        raise InputError(
+            f"{path} is an answer in numbers, without shapes; give --plot FILE to the command that"
+            " answers with it"
+        )
+    try:
+        return load_result(path), False
+    except OtherKindError as error:
+        if error.name != _RAMP:
+            raise
+    return load_ramp(path), True
