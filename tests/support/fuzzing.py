@@ -111,7 +111,8 @@ def changes(draw: st.DrawFn) -> str:
 
 def ranges() -> st.SearchStrategy[str]:
     """Return ranges and lists of numbers, most of them short."""
-    counts = st.one_of(st.sampled_from(("1", "2", "3")), numbers())
+    # A hundred values are a hundred runs of a ramp, which take minutes.
+    counts = st.sampled_from(("1", "2", "3", "8", "0.5", "2.5", *EXTREME))
     return st.one_of(
         st.tuples(numbers(), numbers(), counts).map(":".join),
         st.tuples(numbers(), numbers()).map(":".join),
@@ -189,8 +190,8 @@ _PARAMETERS = (
     *("model.twist_stiffness", "load.slope", "load.exponent", "load.position", "start.amplitude"),
 )
 SOUND_WAYS = {
-    "follow": ("60:61", "1:1.1", "0.5:0.4", "0:0.2", "onset:40"),
-    "step": ("50:52:1", "1:1.2:0.1", "0:0.1:0.1"),
+    "follow": ("60:61", "1:1.1", "0.5:0.4", "0:0.2", "onset:40", "60:61:2", "60,61"),
+    "step": ("50:52:1", "1:1.2:0.1", "0:0.1:0.1", "50:52:3", "0,0.1"),
     "threshold": ("1:1.2:2", "0.5,1"),
     "stability": ("1:1.2:2", "0.5,1", "0:1:3"),
 }
@@ -210,7 +211,7 @@ def _odd(files: Files) -> Mapping[str, st.SearchStrategy[str]]:
         "along": along(),
         "at": along(),
         "forces": ranges(),
-        **dict.fromkeys(("kind", "name", "view", "method"), st.sampled_from(WORDS)),
+        **dict.fromkeys(("kind", "kinds", "name", "view", "method"), st.sampled_from(WORDS)),
         "scheduler": st.sampled_from(("nowhere", "tcp://", "127.0.0.1:1", "tcp://127.0.0.1:99999")),
         "names": st.sampled_from(("missing-item", *JUNK)),
         **dict.fromkeys(
@@ -237,7 +238,7 @@ def _sound(command: str, files: Files) -> Mapping[str, st.SearchStrategy[str]]:
         "along": ways,
         "at": st.just("load.force=50"),
         "forces": st.sampled_from(("40:60:3", "75")),
-        **dict.fromkeys(("kind", "name", "view", "method"), words),
+        **dict.fromkeys(("kind", "kinds", "name", "view", "method"), words),
         "file": read.get(command, files.inputs),
         "result": read.get(command, files.runs),
         "runs": files.runs,

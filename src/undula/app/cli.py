@@ -167,7 +167,7 @@ def resume(
     """Go on where a run ended, in the same file; figure and movie are drawn anew."""
     from undula.app.commands.run_end import finish, views_of
     from undula.app.commands.run_job import resumed
-    from undula.app.commands.stored_files import RESUME, load_run_for
+    from undula.app.stored_files import RESUME, load_run_for
     from undula.storage.outputs import claimed
 
     seconds = seconds_of(budget)

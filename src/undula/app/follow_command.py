@@ -38,7 +38,7 @@ def follow(
     Several kinds are drawn in one diagram. FILE.toml is the input; without it, the defaults.
     """
     from undula.app.commands.follow import follow_kinds
-    from undula.app.commands.tables import branch_table
+    from undula.app.tables import branch_table
     from undula.inputs.build import build_model
     from undula.inputs.input import read_model_input
     from undula.inputs.ranges import parse_way

@@ -97,6 +97,10 @@ ThresholdName = Annotated[
     str,
     typer.Argument(metavar="NAME", help="onset, spinning-lost, flapping-gained or flapping-lost."),
 ]
+LinearMethod = Annotated[
+    str | None,
+    typer.Option(help="spectral, modes or discrete; short for --set stability.method=."),
+]
 SecondParameter = Annotated[
     str | None,
     typer.Option(

@@ -53,7 +53,7 @@ def plot(
 def _plot_file(result: Path, out: Path | None, *, overwrite: bool, as_json: bool) -> int:
     """Draw a stored run or a stored ramp and answer; return the exit status."""
     from undula.app.commands.drawing import figure_path, save_figure
-    from undula.app.commands.stored_files import load_run_or_ramp
+    from undula.app.stored_files import load_run_or_ramp
     from undula.storage.outputs import claimed
     from undula.terminal.output import DONE, reply
     from undula.views import portrait, ramp_diagram
@@ -77,7 +77,7 @@ def movie(
 ) -> int:
     """Make the movie of a stored run, by default next to it as .mp4."""
     from undula.app.commands.drawing import draw_movie, movie_path
-    from undula.app.commands.stored_files import MOVIE, load_run_for
+    from undula.app.stored_files import MOVIE, load_run_for
     from undula.storage.outputs import claimed
     from undula.terminal.output import DONE, reply
 

@@ -14,6 +14,7 @@ from undula.app.options import (
     EndOfSearch,
     Input,
     Json,
+    LinearMethod,
     Overwrite,
     Plot,
     SecondParameter,
@@ -36,10 +37,7 @@ def stability(
         typer.Option(metavar="RANGE", help="Leading eigenvalue at these forces, as 0:60:121."),
     ] = None,
     along: SecondParameter = None,
-    method: Annotated[
-        str | None,
-        typer.Option(help="spectral, modes or discrete; short for --set stability.method=."),
-    ] = None,
+    method: LinearMethod = None,
     plot: Plot = None,
     overwrite: Overwrite = False,
     as_json: Json = False,
@@ -47,11 +45,10 @@ def stability(
 ) -> int:
     """Tell when the straight filament begins to ring and to oscillate, and how fast.
 
-    With --forces the leading eigenvalue at each force, with --along thresholds along a parameter,
-    with both a map.
+    With --forces the leading eigenvalue at each, with --along thresholds, with both a map.
     """
     from undula.app.commands.stability import StabilityRequest, analyse
-    from undula.app.commands.tables import stability_table
+    from undula.app.tables import stability_table
     from undula.inputs.input import read_stability_input
     from undula.inputs.ranges import parse_axis, parse_values
     from undula.terminal.output import answer_form
@@ -59,7 +56,7 @@ def stability(
     form = answer_form(as_json=as_json, as_csv=as_csv)
     if as_csv and forces is None and along is None:
         raise InputError("--csv writes a table; give --forces or --along as well")
-    overrides = [*(changes or ()), *([f"stability.method={method}"] if method is not None else [])]
+    overrides = [*(changes or ()), *([f"stability.method={method}"] * (method is not None))]
     request = StabilityRequest(
         wanted=read_stability_input(file, overrides),
         forces=None if forces is None else parse_values("--forces", forces),
@@ -158,8 +155,8 @@ def _single_threshold(
     form: "Form",
 ) -> int:
     from undula.analysis.parameters import FORCE
-    from undula.app.commands.tables import threshold_table
     from undula.app.commands.threshold import answer_threshold
+    from undula.app.tables import threshold_table
     from undula.inputs.build import build_model
     from undula.terminal.compile_notice import compilation_announced
     from undula.terminal.output import notice
@@ -183,8 +180,8 @@ def _threshold_curve(
 ) -> int:
     """Answer with a threshold along a parameter, and draw it under a claimed name."""
     from undula.analysis.parameters import FORCE
-    from undula.app.commands.tables import threshold_table
     from undula.app.commands.threshold import answer_threshold_curve
+    from undula.app.tables import threshold_table
     from undula.inputs.build import build_model
     from undula.terminal.compile_notice import compilation_announced
     from undula.terminal.output import notice

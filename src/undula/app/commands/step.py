@@ -12,7 +12,7 @@ from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.solvers.thresholds import THRESHOLDS, single_threshold
 from undula.app.commands.drawing import beside, save_figure
 from undula.app.commands.step_text import step_answer, step_text
-from undula.app.commands.tables import ramp_table
+from undula.app.tables import ramp_table
 from undula.errors import InputError
 from undula.inputs.build import build_model, build_schedule, build_start
 from undula.inputs.input import RunInput

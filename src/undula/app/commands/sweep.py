@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from undula.app.commands.sweep_text import sweep_answer, sweep_text
-from undula.app.commands.tables import sweep_table
+from undula.app.tables import sweep_table
 from undula.errors import InputError
 from undula.sweeps.compute import compute
 from undula.sweeps.own_workers import workers_that_fit

@@ -6,9 +6,9 @@ from pathlib import Path
 import xarray as xr
 
 from undula.errors import InputError
+from undula.storage import run_file
 from undula.storage.ramp_file import STEPS, load_ramp
 from undula.storage.result_kinds import OtherKindError
-from undula.storage.run_file import load_result
 
 _RAMP = STEPS.format.split()[0]
 _SWEEP = "study"
@@ -42,7 +42,7 @@ def load_run_for(path: Path, cures: Mapping[str, str]) -> xr.Dataset:
         The file is no stored run, or cannot be read.
     """
     try:
-        return load_result(path)
+        return run_file.load_result(path)
     except OtherKindError as error:
         if error.name not in cures:
             raise
@@ -63,7 +63,7 @@ def load_run_or_ramp(path: Path) -> tuple[xr.Dataset, bool]:
             " answers with it"
         )
     try:
-        return load_result(path), False
+        return run_file.load_result(path), False
     except OtherKindError as error:
         if error.name != _RAMP:
             raise
