@@ -64,3 +64,10 @@ shellingham.detect_shell = lambda *_: ({1!r}, {1!r})
 from undula.app.cli import main
 sys.exit(main([{0!r}]))
 """
+
+
+def test_the_package_runs_as_a_module() -> None:
+    asked = in_process(sys.executable, "-m", "undula", "--version")
+    assert (asked.status, asked.told) == (0, "")
+    assert asked.said.startswith("undula ")
+    assert in_process(sys.executable, "-m", "undula", "run", "--set", "load.forc=1").status == 2

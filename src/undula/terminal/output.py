@@ -8,7 +8,10 @@ from enum import Enum
 from typing import Any
 
 from undula.errors import InputError
+from undula.log import logger
 from undula.terminal.streams import Guarded, err, out
+
+_LOG = logger(__name__)
 
 #: Exit status of every command.
 DONE, BAD_INPUT, STOPPED_EARLY = 0, 2, 3
@@ -70,7 +73,8 @@ def reply(answer: JsonAnswer, text: str, *, as_json: bool) -> None:
 
 
 def notice(sentence: str) -> None:
-    """Write a sentence that is not the answer to standard error."""
+    """Write a sentence that is not the answer to standard error, and log it."""
+    _LOG.info("%s", sentence)
     _write(err(), f"undula: {sentence}")
 
 

@@ -21,8 +21,11 @@ from undula.analysis.runs.stop_rule import (
 )
 from undula.arrays import State
 from undula.interrupts import interruptible
+from undula.log import logger
 from undula.models.model import Model
 from undula.numerics.integration import stepper_state as names
+
+_LOG = logger(__name__)
 
 #: Number of maxima of the energy after which an open-ended run is first tested for irregular
 #: motion; it doubles with each test.
@@ -157,6 +160,14 @@ def carry_on(
     Run or None
         The run, if its end needed a classification.
     """
+    run = _carried_on(simulation, budget, progress)
+    _LOG.info("run %s at t = %.6g", simulation.ending.value, simulation.time)
+    return run
+
+
+def _carried_on(
+    simulation: Simulation, budget: float, progress: Callable[[Progress], None] | None
+) -> Run | None:
     begun = time.monotonic()
     due = FIRST_TEST_MAXIMA
     while due <= simulation.detector.seen:

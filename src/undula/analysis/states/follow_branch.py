@@ -10,9 +10,12 @@ import numpy as np
 from undula.analysis.states.branch import Bifurcation, Bifurcations, Branch, S
 from undula.analysis.states.state import State
 from undula.arrays import Array
+from undula.log import logger
 from undula.numerics.continuation.arclength import Point, Steps, trace, with_tangent
 from undula.numerics.continuation.locate import locate
 from undula.numerics.continuation.problem import Problem
+
+_LOG = logger(__name__)
 
 # Error of the location of a bifurcation, relative to the scale of the parameter.
 _LOCATION_ERROR = 1e-9
@@ -110,9 +113,13 @@ def follow_branch(
         try:
             state = family.judge(problem, reached.u, reached.p)
             interval = _Interval(family, problem, point, reached, (states[-1], state))
-            bifurcations += interval.bifurcations()
+            located = interval.bifurcations()
         except UnresolvedError:
             break
+        bifurcations += located
+        for bifurcation in located:
+            _LOG.info("%s at %s = %.9g", bifurcation.kind, family.parameter, bifurcation.value)
+        _LOG.debug("state at %s = %.9g", family.parameter, reached.p)
         states.append(state)
         values.append(reached.p)
         if stop() or len(states) >= _MOST_POINTS or any(map(enough, bifurcations)):
