@@ -197,7 +197,7 @@ def _threshold_curve(
         from undula.app.commands.drawing import draw_thresholds
 
         done, units = (parameter, values[: len(thresholds)]), model.units.names()
-        draw_thresholds(name, done, thresholds, path, claim, title=title, units=units)
+        draw_thresholds(name, done, [*thresholds], path, claim, title=title, units=units)
 
     return reply_drawn(answer, plot, save, form, threshold_table)
 

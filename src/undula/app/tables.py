@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from undula.schema.answer_keys import ANSWERS, UNITLESS
+from undula.schema.answer_keys import ANSWERS
+from undula.schema.key_kinds import UNITLESS
 from undula.schema.sweep_variables import FIGURES, INNER, SOLVED, STATUS, STATUS_WORDS
 from undula.terminal.csv_table import csv_text
 

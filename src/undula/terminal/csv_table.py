@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from undula.schema.answer_keys import ENERGY, FORCE, FREQUENCY, LENGTH, PARAMETER, RATE, TIME, Named
+from undula.schema.key_kinds import ENERGY, FORCE, FREQUENCY, LENGTH, PARAMETER, RATE, TIME, Named
 
 #: Units of quantities that are the same for all models.
 _FIXED = {RATE: "1/T", TIME: "T"}

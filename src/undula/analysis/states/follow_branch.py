@@ -113,13 +113,9 @@ def follow_branch(
         try:
             state = family.judge(problem, reached.u, reached.p)
             interval = _Interval(family, problem, point, reached, (states[-1], state))
-            located = interval.bifurcations()
+            bifurcations += interval.logged_bifurcations()
         except UnresolvedError:
             break
-        bifurcations += located
-        for bifurcation in located:
-            _LOG.info("%s at %s = %.9g", bifurcation.kind, family.parameter, bifurcation.value)
-        _LOG.debug("state at %s = %.9g", family.parameter, reached.p)
         states.append(state)
         values.append(reached.p)
         if stop() or len(states) >= _MOST_POINTS or any(map(enough, bifurcations)):
@@ -148,6 +144,14 @@ class _Interval(Generic[S]):
     before: Point
     after: Point
     states: tuple[S, S]
+
+    def logged_bifurcations(self) -> list[Bifurcation[S]]:
+        """Return the bifurcations in between, and log them and the state after them."""
+        bifurcations, parameter = self.bifurcations(), self.family.parameter
+        for bifurcation in bifurcations:
+            _LOG.info("%s at %s = %.9g", bifurcation.kind, parameter, bifurcation.value)
+        _LOG.debug("state at %s = %.9g", parameter, self.after.p)
+        return bifurcations
 
     def bifurcations(self) -> list[Bifurcation[S]]:
         """Return the bifurcations in between, in the order of following."""
