@@ -25,6 +25,7 @@ from undula.app.options import (
 )
 from undula.app.plot_commands import movie, plot
 from undula.app.reproduce_command import reproduce
+from undula.app.solve_command import solve
 from undula.app.solving_commands import find, stability, threshold
 from undula.app.sweep_commands import status, sweep
 from undula.interrupts import end_signals_raise
@@ -180,7 +181,7 @@ def resume(
 
 app.command()(plot)
 app.command()(movie)
-for _command in (stability, find, follow, threshold):
+for _command in (stability, find, follow, threshold, solve):
     app.command()(_command)
 
 

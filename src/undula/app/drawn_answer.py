@@ -46,7 +46,7 @@ def reply_drawn(
     """
     from undula.terminal.output import STOPPED_EARLY, notice
 
-    status = _exit_status(answer)
+    status = exit_status(answer)
     try:
         if figure is not None and save is not None:
             save(figure)
@@ -66,7 +66,7 @@ def reply_in(form: "Form", answer: "Answer", table: Table) -> None:
     reply(answer.answer, text, as_json=form is Form.JSON)
 
 
-def _exit_status(answer: "Answer") -> int:
+def exit_status(answer: "Answer") -> int:
     """Return the exit status; give notice of a search that Ctrl-C has ended early."""
     from undula.terminal.output import DONE, STOPPED_EARLY, notice
 

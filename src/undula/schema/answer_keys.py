@@ -188,6 +188,24 @@ THRESHOLD: Keys = {
     "thresholds": {PARAMETER: UNITLESS, **_THRESHOLD},
 }
 
+#: Units of the target and of the slope depend on the question.
+SOLVE: Keys = {
+    **EVERY,
+    **plain("kind", "quantity", "target", "parameter", "between", "least", "most"),
+    **plain("reason", "not_searched"),
+    "units": _NAMES,
+    "solutions": {
+        PARAMETER: UNITLESS,
+        **plain("value", "error", "solver_error", "slope", "stable", "bifurcation"),
+        **_REFERENCE,
+        **dict.fromkeys(("frequency", "second_frequency"), FREQUENCY),
+        "force": FORCE,
+        "force_in": _FURTHER,
+        "leading_rate": RATE,
+        **_EXTENTS,
+    },
+}
+
 # ---------------------------------------------------------------- ramps
 
 _CHANGE: Keys = plain("direction", "before", "after", "start", "end")
@@ -267,6 +285,7 @@ ANSWERS: Mapping[str, Keys] = {
     "find": FIND,
     "follow": FOLLOW,
     "threshold": THRESHOLD,
+    "solve": SOLVE,
     "step": RAMP,
     "sweep": SWEEP,
     "status": SWEEP,

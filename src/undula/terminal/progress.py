@@ -115,3 +115,22 @@ def searching(title: str) -> Iterator[Callable[..., None]]:
             show(0.0, f"{links} links" if force is None else f"{links} links, force {force:.6g}")
 
         yield update
+
+
+@contextmanager
+def located(title: str, parameter: str) -> Iterator[Callable[[float], None]]:
+    """Yield a progress function of the value of a parameter that was reached.
+
+    Parameters
+    ----------
+    title
+        The work in a few words.
+    parameter
+        Name of the parameter.
+    """
+    with meter(title) as show:
+
+        def update(value: float) -> None:
+            show(0.0, f"{parameter} {value:.6g}")
+
+        yield update

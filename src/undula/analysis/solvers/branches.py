@@ -10,16 +10,20 @@ from undula.analysis.parameters import FORCE, value_of
 from undula.analysis.solvers.state_kinds import Solved, kind_by_name, kind_of_state
 from undula.analysis.states.along_parameter import model_along, with_unknowns_of
 from undula.analysis.states.branch import Bifurcation, Branch
-from undula.analysis.states.follow_branch import Progress, follow_branch
+from undula.analysis.states.follow_branch import Family, Progress, follow_branch
 from undula.analysis.states.not_found import NotFound, SearchStatus
 from undula.errors import InputError
 from undula.models.model import Model
-from undula.numerics.continuation.arclength import Steps, advance
+from undula.numerics.continuation.arclength import Point, Steps, advance
 
-# Length of the interval that is followed, in scales (changes of the parameter that count as 1).
-_SCALES = 8.0
+#: Length of the interval that is followed, in scales (changes of the parameter that count as 1).
+SCALES = 8.0
 # Arclength between a Hopf point and the first point of a branch.
 _FIRST_ARCLENGTH = 0.03
+#: Outcome of a search for states that begin at a Hopf point where there is no such point.
+STAYS_STABLE = NotFound(
+    SearchStatus.NO_ONSET, "the straight state stays stable, so that no branch begins at it"
+)
 
 
 @on_one_thread
@@ -82,7 +86,7 @@ def follow(
         first = with_unknowns_of(model, state, parameter, solver.find)
     if isinstance(first, NotFound):
         return first
-    scale = abs(to - start) / _SCALES
+    scale = abs(to - start) / SCALES
     family = solver.family(first, parameter, scale)
     return follow_branch(
         family, solver.unknowns(first), start, to, Steps(scale=scale), progress, enough, stop=stop
@@ -137,14 +141,46 @@ def follow_from_onset(
     solver = kind_by_name(kind)
     beginning = solver.start(model)
     if beginning is None:
-        return NotFound(
-            SearchStatus.NO_ONSET, "the straight state stays stable, so that no branch begins at it"
-        )
-    problem, hopf = beginning
-    if to <= hopf.p:
-        raise InputError(f"the branch begins at force {hopf.p:.6g}; give an end beyond it")
-    scale = (to - hopf.p) / _SCALES
-    first = advance(problem, hopf, _FIRST_ARCLENGTH, scale)
+        return STAYS_STABLE
+    if to <= beginning[1].p:
+        raise InputError(f"the branch begins at force {beginning[1].p:.6g}; give an end beyond it")
+    begun = first_beyond(beginning, model, kind, to, _FIRST_ARCLENGTH)
+    if isinstance(begun, NotFound):
+        return begun
+    family, first = begun
+    steps = Steps(first=_FIRST_ARCLENGTH, scale=family.scale)
+    branch = follow_branch(
+        family, first.u, first.p, to, steps, progress, start=first, least=0.0, stop=stop
+    )
+    return replace(branch, onset=beginning[1].p)
+
+
+def first_beyond(
+    beginning: tuple[Any, Point], model: Model, kind: str, to: float, arclength: float
+) -> tuple[Family[Any], Point] | NotFound:
+    """Return the first point of a branch next to its Hopf point, and the family it belongs to.
+
+    Parameters
+    ----------
+    beginning : tuple of Problem and Point
+        The problem in the force and the Hopf point, as `Kind.start` returns them.
+    model : Model
+        Its own force does not matter.
+    kind : {"spinning", "flapping"}
+        Kind of the states.
+    to : float
+        The force up to which the branch is to be followed, beyond the Hopf force.
+    arclength : float
+        Arclength between the Hopf point and the first point.
+
+    Returns
+    -------
+    tuple of Family and Point, or NotFound
+        The latter if Newton's method finds no such point.
+    """
+    solver, (problem, hopf) = kind_by_name(kind), beginning
+    scale = (to - hopf.p) / SCALES
+    first = advance(problem, hopf, arclength, scale)
     if first is None:
         return NotFound(
             SearchStatus.NOT_CONVERGED,
@@ -152,9 +188,4 @@ def follow_from_onset(
         )
     problem = problem.with_reference(first.u)
     state = solver.judge(model, FORCE)(problem, first.u, first.p)
-    family = solver.family(state, FORCE, scale)
-    steps = Steps(first=_FIRST_ARCLENGTH, scale=scale)
-    branch = follow_branch(
-        family, first.u, first.p, to, steps, progress, start=first, least=0.0, stop=stop
-    )
-    return replace(branch, onset=hopf.p)
+    return solver.family(state, FORCE, scale), first

@@ -151,6 +151,32 @@ def threshold_curve(
     return ThresholdCurve(kind, parameter, done_values, tuple(curve))
 
 
+def threshold_on_links(
+    model: Model, kind: str, *, near: Threshold | None = None, method: Method | None = None
+) -> Threshold:
+    """Return a threshold without the error of its links; arguments are those of `threshold`.
+
+    An onset of the straight state is that of the continuum if the model has one, with its error.
+    """
+    if kind == "onset" and model.axisymmetric:
+        return _onset(model, method, None, converged=False)
+    return _bifurcation_on_links(model, kind, near, None, None)
+
+
+def _bifurcation_on_links(
+    model: Model,
+    kind: str,
+    near: Threshold | None,
+    up_to: float | None,
+    progress: Callable[[int, float], None] | None,
+) -> Threshold:
+    reached = partial(progress, model.links) if progress else None
+    point = search(model, WANTED[kind], near.at if near else None, up_to, reached)
+    if isinstance(point, NotFound):
+        return without_value(kind, point)
+    return _threshold(kind, point, _numbers(point), None, (model.links,), point.error)
+
+
 def _bifurcation(
     model: Model,
     kind: str,
@@ -161,19 +187,17 @@ def _bifurcation(
     converged: bool,
 ) -> Threshold:
     """Return a threshold that is a bifurcation of a branch of bent states."""
+    if not converged:
+        single = _bifurcation_on_links(model, kind, near, up_to, progress)
+        by_links = _error_of_links(single.at, model) if single.at else None
+        error = None if by_links is None else by_links + (single.solver_error or 0.0)
+        return replace(single, error=error)
     guess = near.at if near else None
 
     def solve(finer: Model, coarser: Bifurcation[Any] | None) -> Bifurcation[Any] | NotFound:
         reached = partial(progress, finer.links) if progress else None
         return search(finer, WANTED[kind], coarser or guess, up_to, reached)
 
-    if not converged:
-        point = solve(model, None)
-        if isinstance(point, NotFound):
-            return without_value(kind, point)
-        by_links = _error_of_links(point, model)
-        error = None if by_links is None else by_links + point.error
-        return _threshold(kind, point, _numbers(point), error, (model.links,), point.error)
     limit = converge(model, solve, _numbers)
     if isinstance(limit, NotFound):
         return without_value(kind, limit)
