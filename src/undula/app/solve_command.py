@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
-from undula.app.options import Changes, Input, Json
 from undula.app.drawn_answer import exit_status
+from undula.app.options import Changes, Input, Json
 
 SolvedKind = Annotated[
     str,

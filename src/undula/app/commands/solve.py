@@ -44,7 +44,7 @@ def answer_solve(
     Raises
     ------
     InputError
-        The question is none that can be asked of the model.
+        The question cannot be asked of the model.
     """
     with interruptible() as interrupted, located(f"solving {kind}", parameter) as progress:
         solutions = solve_for(

@@ -112,7 +112,7 @@ class SearchedBranch:
     runs : tuple of Run
         Connected parts.
     not_searched : str or None
-        What could not be searched and why, in words.
+        The part of the range that could not be searched, and why, in words.
     """
 
     runs: tuple[Run, ...]

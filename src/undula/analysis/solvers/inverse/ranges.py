@@ -52,7 +52,7 @@ def range_of(
         return 0.0, _FARTHEST * _onset(model, kind)
     if own == 0.0:
         raise InputError(
-            f"{parameter} is 0, so that it has no range of its own; give between=(LOW, HIGH)"
+            f"{parameter} is 0, from which no range follows; give its ends as between, LOW and HIGH"
         )
     low, high = sorted((own / _LARGEST_RATIO, own * _LARGEST_RATIO))
     return _allowed(model, parameter, low, own), _allowed(model, parameter, high, own)

@@ -16,7 +16,7 @@ class Searched:
     quantities : tuple of float
         Values of the quantity there.
     not_searched : str or None
-        What could not be searched and why, in words; None if the curve was followed to its ends.
+        The part that could not be searched, and why, in words; None without such a part.
     """
 
     values: tuple[float, ...]
@@ -37,5 +37,6 @@ class Searched:
         further = "" if self.not_searched is None else f"; {self.not_searched}"
         return (
             f"{target.kind} between {parameter} {low:.6g} and {high:.6g} has {target.quantity}"
-            f" {least:.6g} to {most:.6g}{further}; give a target in between, or another range"
+            f" {least:.6g} to {most:.6g} at {len(self.values)} points{further}; give a target in"
+            " between, or another range"
         )

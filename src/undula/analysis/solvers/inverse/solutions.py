@@ -96,9 +96,9 @@ class Solutions(Sequence[Solution]):
     found : tuple of Solution
         The solutions.
     reason : str or None
-        Why there is none.
+        Reason for which the target is not met; None if it is.
     not_searched : str or None
-        What of the range could not be searched and why, in words; None if all of it was.
+        The part of the range that could not be searched, and why; None without such a part.
 
     Examples
     --------
@@ -137,7 +137,7 @@ class Solutions(Sequence[Solution]):
         return self.found[index]
 
     def __str__(self) -> str:
-        """Return the solutions, or why there is none, in one line."""
+        """Return the solutions, or the reason for which the target is not met, in one line."""
         wanted = f"{self.kind} with {self.quantity} {self.target:.8g}"
         if self.reason is not None:
             return _line(f"no {wanted}: {self.reason}")
