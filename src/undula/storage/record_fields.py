@@ -32,6 +32,7 @@ _MODULES: Mapping[str, tuple[str, ...]] = {
     "undula.analysis.states.extrapolation": ("Converged",),
     "undula.analysis.linear.results": ("Onset", "Crossing", "Spectrum"),
     "undula.analysis.linear.curves": ("GrowthCurve", "CriticalCurve"),
+    "undula.analysis.solvers.inverse.solutions": ("Solution", "Solutions"),
     "undula.analysis.solvers.threshold_record": ("Threshold", "ThresholdCurve"),
     "undula.analysis.solvers.threshold_search": ("Missed",),
     "undula.analysis.sensitivity.sensitivities": ("Sensitivities",),

@@ -4,6 +4,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, overload
 
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from undula.analysis.record import Fact, Record
 from undula.analysis.solvers.state_kinds import Solved
 from undula.analysis.solvers.threshold_record import Threshold
 
@@ -12,7 +17,7 @@ _LONGEST_LINE = 200
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Solution:
+class Solution(Record):
     """A value of a parameter at which a quantity of a state or of a threshold has its target.
 
     Attributes
@@ -53,15 +58,23 @@ class Solution:
 
     def __str__(self) -> str:
         """Return the value with its error, and the state there, in one line."""
-        error = "" if self.error is None else f" +- {self.error:.1g}"
+        error = "" if self.error is None else f" ± {self.error:.1g}"
         links = ""
         if self.links is not None and self.error != self.solver_error:
             links = f" ({self.links} links, solved to {self.solver_error:.1g})"
         return _line(f"{self.parameter} = {self.value:.10g}{error}{links}: {self.motion}")
 
-    def __repr__(self) -> str:
-        """Return the same line as `str`."""
-        return f"<{_line(str(self), _LONGEST_LINE - 2)}>"
+    def facts(self) -> dict[str, Fact]:
+        """Return parameter, value, errors, target and slope by name."""
+        return {
+            "parameter": Fact(self.parameter),
+            "value": Fact(self.value, "", self.error),
+            "solver_error": Fact(self.solver_error),
+            "quantity": Fact(self.quantity),
+            "target": Fact(self.target),
+            "slope": Fact(self.slope),
+            "links": Fact("continuum" if self.links is None else self.links),
+        }
 
     @property
     def motion(self) -> str:
@@ -76,7 +89,7 @@ class Solution:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Solutions(Sequence[Solution]):
+class Solutions(Record, Sequence[Solution]):
     """All solutions of an inverse question in a range, by rising value; false without any.
 
     Attributes
@@ -142,17 +155,48 @@ class Solutions(Sequence[Solution]):
         if self.reason is not None:
             return _line(f"no {wanted}: {self.reason}")
         errors = [
-            f"{solution.value:.8g}"
-            + ("" if solution.error is None else f" +- {solution.error:.1g}")
+            f"{solution.value:.8g}" + ("" if solution.error is None else f" ± {solution.error:.1g}")
             for solution in self.found
         ]
         return _line(f"{wanted} at {self.parameter} = {', '.join(errors)}")
 
-    def __repr__(self) -> str:
-        """Return the same line as `str`."""
-        return f"<{_line(str(self), _LONGEST_LINE - 2)}>"
+    def facts(self) -> dict[str, Fact]:
+        """Return the question, the range, and each solution by name."""
+        numbered = {
+            f"solution {number}": Fact(solution.value, "", solution.error)
+            for number, solution in enumerate(self.found, start=1)
+        }
+        least, most = self.quantity_range or (None, None)
+        return {
+            "kind": Fact(self.kind),
+            "quantity": Fact(self.quantity),
+            "target": Fact(self.target),
+            "parameter": Fact(self.parameter),
+            "least": Fact(least),
+            "largest": Fact(most),
+            **numbered,
+            "reason": Fact(self.reason or ""),
+        }
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return values, errors and slopes of the solutions as a dataset, by their number."""
+        errors = [np.nan if solution.error is None else solution.error for solution in self.found]
+        columns = {
+            "value": [solution.value for solution in self.found],
+            "error": errors,
+            "solver_error": [solution.solver_error for solution in self.found],
+            "slope": [solution.slope for solution in self.found],
+        }
+        about = {"parameter": self.parameter, "quantity": self.quantity, "target": self.target}
+        return xr.Dataset(
+            {name: ("solution", np.array(column)) for name, column in columns.items()}, attrs=about
+        )
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a row for each solution."""
+        return self.to_xarray().to_dataframe().reset_index()
 
 
-def _line(text: str, most: int = _LONGEST_LINE) -> str:
-    """Return a text, cut to a number of characters."""
-    return text if len(text) <= most else f"{text[: most - 3]}..."
+def _line(text: str) -> str:
+    """Return a text, cut to the largest number of characters."""
+    return text if len(text) <= _LONGEST_LINE else f"{text[: _LONGEST_LINE - 3]}..."

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Sequence
 
+from undula.analysis.arguments import require_model
+from undula.analysis.one_thread import on_one_thread
 from undula.analysis.solvers.inverse.branch_search import Question, search_branch
 from undula.analysis.solvers.inverse.branch_solutions import branch_solutions
 from undula.analysis.solvers.inverse.ranges import range_of
@@ -18,6 +20,7 @@ from undula.analysis.states.follow_branch import Progress
 from undula.models.model import Model
 
 
+@on_one_thread
 def solve_for(
     model: Model,
     kind: str,
@@ -75,10 +78,11 @@ def solve_for(
     >>> import undula as un
     >>> model = un.Filament(8, un.TipLoad(75.0))
     >>> forces = solve_for(model, "spinning", frequency=80.0, by="load.force", between=(40, 100))
-    >>> state = un.find_spinning(model.with_(force=forces[0].value))
+    >>> state = un.find(model.with_(force=forces[0].value), "spinning")
     >>> len(forces), round(state.frequency, 6)
     (1, 80.0)
     """
+    require_model(model, "solve_for")
     wanted = target_of(model, kind, target)
     if kind in THRESHOLDS:
         require_other_than_force(kind, by)

@@ -27,6 +27,8 @@ _QUANTITIES: Mapping[str, Mapping[str, str]] = {
     "equilibrium": {"leading_rate": "leading_rate"} | _STEADY,
     "periodic": {name: name for name in _MOVING} | _SHAPE_CHANGES,
 }
+# Relative error of an extreme over a period, which depends on the instants of its samples.
+_EXTREMUM_ERROR = 1e-6
 #: Quantities of a threshold.
 _OF_THRESHOLDS = {"value": "value", "frequency": "frequency"}
 
@@ -109,11 +111,13 @@ def solver_error_of(state: Solved, target: Target) -> float:
     """Return the estimated error of a quantity of a state on its links, in the quantity's unit.
 
     It is the relative error of the frequency, or at rest the residual. A growth rate also has the
-    distance of trivial exponents from 0.
+    distance of trivial exponents from 0, and an extreme over a period the error of its samples.
     """
     value = target.of(state)
     relative = state.solver_error / state.frequency if state.frequency else state.residual
     error = abs(relative * value)
+    if target.quantity.endswith(("_min", "_max")):
+        error += _EXTREMUM_ERROR * abs(value)
     if target.quantity.startswith("leading_rate"):
         error += _error_of_rates(state)
     return float(error)

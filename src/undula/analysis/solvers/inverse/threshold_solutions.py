@@ -23,7 +23,7 @@ from undula.analysis.solvers.inverse.threshold_interval import (
 )
 from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.solvers.threshold_search import WANTED
-from undula.analysis.solvers.thresholds import threshold, threshold_on_links
+from undula.analysis.solvers.thresholds import single_threshold, threshold_on_links
 from undula.analysis.states.along_parameter import model_along
 from undula.analysis.states.extrapolation import error_of_links
 from undula.analysis.states.follow_branch import Progress
@@ -154,7 +154,7 @@ def _solution(interval: ThresholdInterval, sample: ThresholdSample) -> Solution:
     curve, target = interval.curve, interval.curve.target
     slope = interval.slope_at(sample)
     model = changed(curve.model, curve.parameter, sample.p)
-    found = threshold(model, target.kind, near=sample.threshold, method=curve.method)
+    found = single_threshold(model, target.kind, near=sample.threshold, method=curve.method)
     # The frequency is about as accurate as the force, relative to its value.
     share = abs(sample.quantity / (sample.threshold.value or 1.0))
     of_quantity = abs(sample.miss) + share * (sample.threshold.solver_error or 0.0)
