@@ -43,6 +43,15 @@ class Solution(Record):
         The state there, of a threshold the one at the bifurcation; None for the straight state.
     threshold : Threshold or None
         The threshold there, if the question was for one.
+
+    Examples
+    --------
+    >>> import undula as un
+    >>> model = un.Filament(8, un.TipLoad(75.0))
+    >>> question = {"tip_radius": 0.4, "by": "load.force", "between": (40, 60)}
+    >>> solution = un.solve_for(model, "spinning", **question)[0]
+    >>> solution.state.kind, round(solution.state.tip_radius.mean, 8)
+    ('spinning', 0.4)
     """
 
     parameter: str
@@ -117,8 +126,8 @@ class Solutions(Record, Sequence[Solution]):
     --------
     >>> import undula as un
     >>> model = un.Filament(8, un.TipLoad(75.0))
-    >>> from undula.analysis.solvers.inverse.solve_for import solve_for
-    >>> forces = solve_for(model, "spinning", frequency=80.0, by="load.force", between=(40, 100))
+    >>> question = {"frequency": 80.0, "by": "load.force", "between": (40, 100)}
+    >>> forces = un.solve_for(model, "spinning", **question)
     >>> len(forces), bool(forces), forces[0].state.stable
     (1, True, True)
     """

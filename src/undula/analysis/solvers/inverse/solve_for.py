@@ -77,7 +77,8 @@ def solve_for(
     --------
     >>> import undula as un
     >>> model = un.Filament(8, un.TipLoad(75.0))
-    >>> forces = solve_for(model, "spinning", frequency=80.0, by="load.force", between=(40, 100))
+    >>> question = {"frequency": 80.0, "by": "load.force", "between": (40, 100)}
+    >>> forces = un.solve_for(model, "spinning", **question)
     >>> state = un.find(model.with_(force=forces[0].value), "spinning")
     >>> len(forces), round(state.frequency, 6)
     (1, 80.0)
