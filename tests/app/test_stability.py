@@ -209,7 +209,7 @@ def test_changes_of_a_table_that_is_not_read_are_refused(change: str, ask: Ask) 
     Path("run.toml").write_text("[start]\nseed = 7\n")
     told = refused(ask("stability", "run.toml", "--set", change, "--json"))
     assert f"--set {change.split('.')[0]}" in told
-    assert "it reads [model], [load], [stability]" in told
+    assert "it reads [model], [load], [units], [stability]" in told
 
 
 def test_a_mistake_in_a_table_of_another_command_is_told(ask: Ask) -> None:

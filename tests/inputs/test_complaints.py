@@ -142,7 +142,7 @@ def test_a_key_that_nothing_would_read_is_refused(
         ({"laod": {}}, "[laod] is not a known table; did you mean [load]?"),
         (
             {"zzz": {}},
-            "[zzz] is not a known table; the tables are model, load, start and time",
+            "[zzz] is not a known table; the tables are model, load, units, start and time",
         ),
         ({"load": 75}, "load = 75 is not a table; write [load] and its keys below"),
         (

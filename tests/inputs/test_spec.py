@@ -259,7 +259,7 @@ def test_a_run_refuses_changes_of_the_table_of_stability(override: str, tmp_path
     for file in (None, path):
         sentence = complaint(partial(read_input, file, [override]))
         assert sentence.startswith("--set stability.")
-        assert sentence.endswith("it reads [model], [load], [start], [time]")
+        assert sentence.endswith("it reads [model], [load], [units], [start], [time]")
 
 
 @pytest.mark.parametrize("override", ["start.seed=3", "time.until=1"])
@@ -268,7 +268,7 @@ def test_stability_refuses_changes_of_the_tables_of_a_run(override: str, tmp_pat
     for file in (None, path):
         sentence = complaint(partial(read_stability_input, file, [override]))
         assert sentence.startswith(f"--set {override.split('.')[0]}.")
-        assert sentence.endswith("it reads [model], [load], [stability]")
+        assert sentence.endswith("it reads [model], [load], [units], [stability]")
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,13 @@
 """Claims on SI scales: the published values, the way there and back, refusals."""
 
 import math
+from typing import get_args
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from refusal import complaint
 from undula.errors import InputError
 from undula.models.scales import Quantity, Scales
 
@@ -20,7 +22,7 @@ PUBLISHED = [
     ("force", 37.7, 75.4e-12, 0.05e-12),
     ("force", 188.0, 376e-12, 0.5e-12),
 ]
-QUANTITIES: list[Quantity] = ["length", "time", "frequency", "force", "force_density", "energy"]
+QUANTITIES: list[Quantity] = list(get_args(Quantity))
 # Far beyond any filament, and far inside what is accepted.
 sizes = st.floats(1e-30, 1e30)
 
@@ -57,6 +59,7 @@ def test_converting_there_and_back_changes_nothing(
 def test_each_unit_scales_with_the_power_of_length_that_it_should(factor: float) -> None:
     one, other = Scales(), Scales(length=factor * Scales().length)
     powers = {"time": 4, "frequency": -4, "force": -2, "force_density": -3, "energy": -1}
+    powers |= {"rate": -4, "power": -5, "curvature": -1}
     for quantity, power in powers.items():
         # A handful of roundings, raised to the fourth power.
         ratio = getattr(other, quantity) / getattr(one, quantity)
@@ -78,8 +81,46 @@ def test_a_rod_as_thick_as_long_is_refused(slenderness: float) -> None:
         Scales(slenderness=slenderness)
 
 
-@pytest.mark.parametrize("extreme", [1e-40, 1e40])
+@pytest.mark.parametrize("extreme", [1e-36, 1e36])
 def test_the_widest_accepted_values_still_give_finite_scales(extreme: float) -> None:
     scales = Scales(length=extreme, bending_stiffness=1 / extreme, viscosity=extreme)
     values = [getattr(scales, quantity) for quantity in QUANTITIES]
     assert all(math.isfinite(value) and value > 0.0 for value in values)
+
+
+def test_scales_are_made_from_texts_with_units() -> None:
+    texts = {"length": "12 um", "stiffness": "25 pN um^2", "viscosity": "1 mPa s"}
+    assert Scales.from_units(**texts, slenderness=0.02) == Scales(12e-6, 25e-24, 1e-3, 0.02)
+    assert Scales.from_units() == Scales()
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"length": "12 s"}, "length = '12 s' has a unit that is not that of a length; give a"),
+        ({"length": "12 parsec"}, "length = '12 parsec' is 3.7e+17 m, which is out of range;"),
+        ({"stiffness": "-1 pN um^2"}, "stiffness = '-1 pN um^2' is not above 0; give a"),
+        ({"viscosity": 1e-3}, "viscosity = 0.001 is not a number and its unit; give a viscosity"),
+        ({"slenderness": 1.5}, "slenderness = 1.5 is out of range"),
+    ],
+)
+def test_texts_that_give_no_scales_are_refused_by_name(given: dict, sentence: str) -> None:
+    assert complaint(lambda: Scales.from_units(**given)).startswith(sentence)
+
+
+def test_physical_numbers_are_those_of_the_published_table_in_their_units() -> None:
+    assert Scales().physical("force", 37.7) == (pytest.approx(75.4, rel=1e-12), "pN")
+    assert Scales().physical("length", 1.0) == (pytest.approx(20.0, rel=1e-12), "um")
+    assert Scales().physical("curvature", 1.0) == (pytest.approx(0.05, rel=1e-12), "1/um")
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_a_unit_in_the_table_is_one_dimensionless_unit(quantity: Quantity) -> None:
+    value, unit = Scales().physical(quantity, 1.0)
+    assert Scales().units()[quantity] == {"value": value, "unit": unit}
+
+
+def test_power_is_energy_in_time_and_rate_is_one_over_time() -> None:
+    scales = Scales()
+    assert scales.power * scales.time == pytest.approx(scales.energy, rel=1e-15)
+    assert scales.rate == scales.frequency

@@ -50,9 +50,10 @@ def follow(
     wanted, way = read_model_input(file, changes or ()), parse_way("--along", along)
     with figure_claimed(plot, overwrite=overwrite, reads=[file, *(runs or ())]) as claim:
         stored = _runs_to_draw(names, way.parameter, plot, runs or ())
-        model, title = build_model(wanted), wanted.describe({way.parameter})
+        model = build_model(wanted)
+        labels: Any = {"title": wanted.describe({way.parameter}), "scales": wanted.scales}
         with compilation_announced(notice):
-            answer, branches = follow_kinds(model, names, way, converge=converge, title=title)
+            answer, branches = follow_kinds(model, names, way, converge=converge, **labels)
         if as_csv:
             _notice_missing(answer.answer)
 
@@ -60,9 +61,9 @@ def follow(
             from undula.app.commands.drawing import draw_branches, draw_straight
 
             if names == [_STRAIGHT]:
-                draw_straight(branches[0], path, claim, title=title, units=model.units.names())
+                draw_straight(branches[0], path, claim, units=model.units.names(), **labels)
             else:
-                draw_branches(branches, stored, path, claim, title=title)
+                draw_branches(branches, stored, path, claim, **labels)
 
         return reply_drawn(answer, plot if branches else None, save, form, branch_table)
 

@@ -117,6 +117,20 @@ EndOfSearch = Annotated[
 ]
 
 
+def end_of_search(up_to: float | None) -> float | None:
+    """Return the force at which a search ends; None for the default.
+
+    Raises
+    ------
+    InputError
+        The force is not a positive number.
+    """
+    # This form of the condition also refuses NaN.
+    if up_to is not None and not 0.0 < up_to < float("inf"):
+        raise InputError(f"--up-to {up_to} is out of range; give a finite force above 0")
+    return up_to
+
+
 def seconds_of(budget: float | None) -> float:
     """Return the wall time of a command [s], infinite for None.
 

@@ -1,7 +1,7 @@
 """The commands that solve for states: stability, find and threshold."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,6 +20,7 @@ from undula.app.options import (
     SecondParameter,
     ThresholdName,
     a_file,
+    end_of_search,
 )
 from undula.errors import InputError
 
@@ -132,7 +133,7 @@ def threshold(
     from undula.terminal.output import answer_form
 
     form = answer_form(as_json=as_json, as_csv=as_csv)
-    wanted, end = read_model_input(file, changes or ()), _end_of_search(up_to)
+    wanted, end = read_model_input(file, changes or ()), end_of_search(up_to)
     if along is not None:
         if sensitivities:
             raise InputError("--sensitivities is of one threshold; leave out --along")
@@ -164,7 +165,13 @@ def _single_threshold(
     model, title = build_model(wanted), wanted.describe({FORCE})
     with compilation_announced(notice):
         answer = answer_threshold(
-            model, name, converge=converge, up_to=end, title=title, derivatives=sensitivities
+            model,
+            name,
+            converge=converge,
+            up_to=end,
+            title=title,
+            derivatives=sensitivities,
+            scales=wanted.scales,
         )
     return reply_drawn(answer, None, None, form, threshold_table)
 
@@ -190,21 +197,14 @@ def _threshold_curve(
     model, title = build_model(wanted), wanted.describe({FORCE, parameter})
     with compilation_announced(notice):
         answer, thresholds = answer_threshold_curve(
-            model, name, axis, converge=converge, up_to=end, title=title
+            model, name, axis, converge=converge, up_to=end, title=title, scales=wanted.scales
         )
 
     def save(path: Path) -> None:
         from undula.app.commands.drawing import draw_thresholds
 
-        done, units = (parameter, values[: len(thresholds)]), model.units.names()
-        draw_thresholds(name, done, [*thresholds], path, claim, title=title, units=units)
+        labels: Any = {"units": model.units.names(), "scales": wanted.scales}
+        done = parameter, values[: len(thresholds)]
+        draw_thresholds(name, done, [*thresholds], path, claim, title=title, **labels)
 
     return reply_drawn(answer, plot, save, form, threshold_table)
-
-
-def _end_of_search(up_to: float | None) -> float | None:
-    """Return the force at which a search ends; refuse a value that is not a positive number."""
-    # This form of the condition also refuses NaN.
-    if up_to is not None and not 0.0 < up_to < float("inf"):
-        raise InputError(f"--up-to {up_to} is out of range; give a finite force above 0")
-    return up_to

@@ -11,15 +11,18 @@ from typing import Any, Self, TypeVar
 from pydantic import Field, ValidationError, model_validator
 
 from undula.errors import InputError
+from undula.inputs.chain_defaults import with_chain_defaults
+from undula.inputs.given_units import dimensionless
 from undula.inputs.messages import explain
 from undula.inputs.model_tables import LoadTable, ModelTable
 from undula.inputs.overrides import apply_overrides, read_toml
 from undula.inputs.run_tables import StabilityTable, StartTable, TimeTable
 from undula.inputs.sweep_table import SweepTable
 from undula.inputs.table import Table, conflict
+from undula.inputs.units_table import UnitsTable
 from undula.models.description import describe
 from undula.models.loads.beads import BeadLoad
-from undula.models.units import FILAMENT_UNITS, chain_units
+from undula.models.scales import Scales
 
 
 class ModelInput(Table):
@@ -30,31 +33,19 @@ class ModelInput(Table):
     model, load
         The tables ``[model]`` and ``[load]``. Every key has a value; a key without meaning for the
         chosen values of other keys holds its default and is left out of `dump`.
+    units
+        The table ``[units]``, None without one; it changes no dimensionless number.
     """
 
     model: ModelTable = Field(default=ModelTable(), description="a table")
     load: LoadTable = Field(default=LoadTable(), description="a table")
+    units: UnitsTable | None = Field(default=None, description="a table")
 
     @model_validator(mode="before")
     @classmethod
     def _chains_move_like_filaments(cls, given: Any) -> Any:
         """Set the defaults of a chain: force and times that correspond to those of a filament."""
-        table = given.get("model") if isinstance(given, Mapping) else None
-        if not (isinstance(table, Mapping) and table.get("kind") == "chain"):
-            return given
-        links = table.get("links", ModelTable.model_fields["links"].default)
-        if not isinstance(links, int) or links < 1:
-            return given  # refused by the check of this key
-        units = chain_units(links)
-        corresponding = {
-            "load": {"force": LoadTable().force / units.forces[FILAMENT_UNITS.force]},
-            "time": {key: value * units.duration for key, value in _times(given).items()},
-        }
-        return dict(given) | {
-            name: defaults | dict(given.get(name, {}))
-            for name, defaults in corresponding.items()
-            if name in cls.model_fields and isinstance(given.get(name, {}), Mapping)
-        }
+        return with_chain_defaults(given, cls.model_fields)
 
     @model_validator(mode="after")
     def _force_finds_its_beads(self) -> Self:
@@ -70,6 +61,20 @@ class ModelInput(Table):
         except InputError as error:
             raise conflict(f"load.{str(error).removeprefix('BeadLoad: ')}") from None
         return self
+
+    @model_validator(mode="after")
+    def _units_are_of_a_filament(self) -> Self:
+        if self.units is not None and self.model.kind == "chain":
+            raise conflict(
+                "[units] are those of a filament, and model.kind = 'chain' has springs and beads"
+                " of its own; use model.kind = 'filament' or remove [units]"
+            )
+        return self
+
+    @property
+    def scales(self) -> Scales | None:
+        """SI values of the dimensionless units, None without a table ``[units]``."""
+        return None if self.units is None else self.units.scales
 
     @property
     def load_text(self) -> str:
@@ -91,9 +96,11 @@ class ModelInput(Table):
         -------
         dict
             Keys and values by table, without the keys that have no meaning for the chosen values
-            of others. `parse_input` turns it back into an equal record.
+            of others, and without a table ``[units]`` that is not given. `parse_input` turns it
+            back into an equal record.
         """
-        return {name: getattr(self, name).dump() for name in type(self).model_fields}
+        tables = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: table.dump() for name, table in tables.items() if table is not None}
 
 
 class RunInput(ModelInput):
@@ -121,6 +128,15 @@ class StabilityInput(ModelInput):
     """The complete, checked input of a stability analysis of the straight state."""
 
     stability: StabilityTable = Field(default=StabilityTable(), description="a table")
+
+    @model_validator(mode="after")
+    def _units_have_one_time(self) -> Self:
+        if self.units is not None and self.stability.paper_time:
+            raise conflict(
+                "stability.paper_time = true has a unit of time that is not that of [units]; use"
+                " stability.paper_time = false or remove [units]"
+            )
+        return self
 
 
 class SweepInput(RunInput):
@@ -155,7 +171,7 @@ def parse_input(tables: Mapping[str, Any]) -> RunInput:
         A key or value is wrong. The sentence states the first mistake, its cure and the number of
         further mistakes.
     """
-    return _checked(RunInput, tables)
+    return _checked(RunInput, dimensionless(tables))
 
 
 def read_input(path: Path | None = None, overrides: Sequence[str] = ()) -> RunInput:
@@ -245,7 +261,7 @@ def changed_tables(
     Returns
     -------
     dict
-        The tables of this type of input, as given.
+        The tables of this type of input as given, with dimensionless numbers.
     Input
         The checked record, every default filled in.
 
@@ -254,7 +270,7 @@ def changed_tables(
     InputError
         An override is malformed or belongs to another command, or a key or value is wrong.
     """
-    given = apply_overrides(tables, overrides)
+    given = dimensionless(apply_overrides(tables, overrides))
     _checked(_WholeFile, given)
     for override in overrides:
         if override.partition(".")[0].strip() not in record.model_fields:
@@ -264,14 +280,6 @@ def changed_tables(
             )
     own = {name: given[name] for name in record.model_fields if name in given}
     return own, _checked(record, own)
-
-
-def _times(given: Mapping[str, Any]) -> dict[str, float]:
-    """Return the default times of a filament that have a meaning for a given table ``[time]``."""
-    fields, chosen = TimeTable.model_fields, given.get("time")
-    if isinstance(chosen, Mapping) and chosen.get("until") in ("settled", "solved"):
-        return {"limit": fields["limit"].default}
-    return {"until": fields["until"].default}
 
 
 def _checked(record: type[Input], tables: Mapping[str, Any]) -> Input:

@@ -12,6 +12,7 @@ from undula.schema.key_kinds import (
     FORCE,
     FREQUENCY,
     LENGTH,
+    OF_PARAMETER,
     PARAMETER,
     RATE,
     TIME,
@@ -21,6 +22,7 @@ from undula.schema.key_kinds import (
     plain,
     range_of,
     with_error,
+    with_physical,
 )
 
 #: Derivatives, by parameter and quantity.
@@ -165,7 +167,8 @@ _BRANCH: Keys = {
     },
     "bifurcations": {
         PARAMETER: UNITLESS,
-        **plain("kind", "value", "error", "stability", "not_converged"),
+        **dict.fromkeys(("value", "error"), OF_PARAMETER),
+        **plain("kind", "stability", "not_converged"),
         **_REFERENCE,
         "force_in": _FURTHER,
         **dict.fromkeys(("frequency", "second_frequency"), FREQUENCY),
@@ -208,21 +211,23 @@ SOLVE: Keys = {
 
 # ---------------------------------------------------------------- ramps
 
-_CHANGE: Keys = plain("direction", "before", "after", "start", "end")
+_BETWEEN: Keys = dict.fromkeys(("start", "end"), OF_PARAMETER)
+_CHANGE: Keys = {**plain("direction", "before", "after"), **_BETWEEN}
 RAMP: Keys = {
     **EVERY,
     **plain("parameter", "load", "missing", "store", "figure"),
     "units": _NAMES,
     "steps": {
-        **plain("value", "direction", "status", "cause", "verdict", "reason", "planarity"),
+        "value": OF_PARAMETER,
+        **plain("direction", "status", "cause", "verdict", "reason", "planarity"),
         **plain("power_balance_error", "length_error", "steps", "seconds"),
         "time": TIME,
         **_FREQUENCIES,
         **_EXTENTS,
     },
-    "regimes": plain("direction", "verdict", "start", "end", "steps"),
+    "regimes": {**plain("direction", "verdict", "steps"), **_BETWEEN},
     "changes": _CHANGE,
-    "hysteresis": plain("low", "high", "up", "down"),
+    "hysteresis": {**dict.fromkeys(("low", "high"), OF_PARAMETER), **plain("up", "down")},
     "thresholds": {**_THRESHOLD, "nearest_change": _CHANGE},
 }
 
@@ -232,7 +237,7 @@ SWEEP: Keys = {
     **EVERY,
     **plain("store", "load", "label", "keep", "policy", "tries", "seconds"),
     "units": _NAMES,
-    "axes": plain("key", "first", "last", "count"),
+    "axes": {**plain("key", "count"), **dict.fromkeys(("first", "last"), OF_PARAMETER)},
     "points": plain("all", "done", "failed", "to_go"),
     "verdicts": Named(UNITLESS),
     "failures": {PARAMETER: UNITLESS, **plain("try", "reason")},
@@ -277,8 +282,7 @@ REPRODUCE: Keys = {
     "items": plain("name", "title", "paper", "claims"),
 }
 
-#: The keys of an answer, by the command.
-ANSWERS: Mapping[str, Keys] = {
+_DIMENSIONLESS: Mapping[str, Keys] = {
     "run": RUN,
     "resume": RUN,
     "stability": STABILITY,
@@ -293,4 +297,8 @@ ANSWERS: Mapping[str, Keys] = {
     "movie": MOVIE,
     "units": UNITS,
     "reproduce": REPRODUCE,
+}
+#: The keys of an answer, by the command.
+ANSWERS: Mapping[str, Keys] = {
+    command: with_physical(keys) for command, keys in _DIMENSIONLESS.items()
 }

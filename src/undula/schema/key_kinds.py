@@ -9,6 +9,8 @@ UNITLESS = "unitless"
 #: Quantities with a unit.
 LENGTH, TIME, FREQUENCY, RATE = "length", "time", "frequency", "rate"
 FORCE, ENERGY = "force", "energy"
+#: The quantity of the parameter that the answer, or the object itself, names.
+OF_PARAMETER = "of the parameter"
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,10 @@ class Named:
 Keys = Mapping[str, Any]
 #: The key under which an object holds the value of a parameter: the parameter's own name.
 PARAMETER = "<parameter>"
+#: The key of the numbers of an answer in physical units.
+PHYSICAL = "physical"
+_RANGE = ("min", "max", "mean")
+_PHYSICAL_NUMBER = ("value", "unit")
 
 
 def plain(*names: str) -> Keys:
@@ -42,4 +48,31 @@ def with_error(name: str, quantity: str) -> Keys:
 
 def range_of(quantity: str) -> Keys:
     """Return the keys of the range of a quantity."""
-    return dict.fromkeys(("min", "max", "mean"), quantity)
+    return dict.fromkeys(_RANGE, quantity)
+
+
+def is_range(keys: Any) -> bool:
+    """Return True for the keys of a range."""
+    return isinstance(keys, Mapping) and tuple(keys) == _RANGE
+
+
+def with_physical(keys: Keys) -> Keys:
+    """Return the keys of an answer together with those of its numbers in physical units."""
+    physical = _physical(keys)
+    return {**keys, PHYSICAL: physical} if physical else keys
+
+
+def _physical(keys: Any) -> Any:
+    """Return the keys of physical numbers: an object in place of a number with a unit."""
+    if isinstance(keys, Named):
+        inner = _physical(keys.values)
+        return Named(inner) if inner else {}
+    if isinstance(keys, str):
+        return {} if keys == UNITLESS else plain(*_PHYSICAL_NUMBER)
+    inners = {name: _physical(inner) for name, inner in keys.items()}
+    if PARAMETER in keys:
+        inners[PARAMETER] = plain(*_PHYSICAL_NUMBER)
+    if is_range(keys):
+        # A quantity that does not change in time is a number in place of its range.
+        inners |= plain(*_PHYSICAL_NUMBER)
+    return {name: inner for name, inner in inners.items() if inner}

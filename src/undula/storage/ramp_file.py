@@ -15,7 +15,9 @@ from undula.analysis.observables.shapes import Range
 from undula.analysis.ramps.ramp import Ramp, Step
 from undula.errors import InputError
 from undula.models.model import Model
+from undula.models.scales import Scales
 from undula.storage.differences import difference
+from undula.storage.physical_attributes import coordinate_attributes, with_physical_attributes
 from undula.storage.result_kinds import Kind
 from undula.storage.run_file import read_result, write_result
 
@@ -57,12 +59,15 @@ class Series:
         The model that the input describes.
     ramp
         The values of the parameter in order, with kick and seed.
+    scales
+        SI values of the dimensionless units, None without ``[units]`` in the input.
     """
 
     input: Mapping[str, Any]
     load: str
     model: Model
     ramp: Ramp
+    scales: Scales | None = None
 
 
 def write_ramp(path: Path, series: Series, steps: Sequence[Step]) -> None:
@@ -160,7 +165,10 @@ def dataset_of_steps(series: Series, steps: Sequence[Step]) -> xr.Dataset:
         "arclength": ("node", np.linspace(0.0, 1.0, links + 1), {"units": "L"}),
         "axis": ("axis", np.array(["x", "y", "z"])),
     }
-    return xr.Dataset(variables, coords=coordinates, attrs=_attributes(series))
+    dataset = xr.Dataset(variables, coords=coordinates, attrs=_attributes(series))
+    in_parameter = coordinate_attributes(series.scales, series.ramp.parameter, units)
+    dataset["value"].attrs.update(in_parameter)
+    return with_physical_attributes(dataset, series.scales, units)
 
 
 def stored_steps(stored: xr.Dataset) -> list[Step]:

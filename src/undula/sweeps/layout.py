@@ -16,9 +16,16 @@ from zarr.registry import get_numcodec
 from undula.analysis.runs.last_period import INSTANTS, SHAPES
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
+from undula.inputs.units_table import scales_of
 from undula.models.model import Model
+from undula.models.scales import Scales
 from undula.schema.sweep_axes import REPLICATE
 from undula.schema.sweep_variables import INNER, SEED, STATUS, STATUS_WORDS, Column, columns_of
+from undula.storage.physical_attributes import (
+    coordinate_attributes,
+    physical_attributes,
+    scales_attributes,
+)
 from undula.storage.zarr_metadata import seal_of, single_files
 from undula.sweeps.chunk_files import CHECKSUM
 from undula.sweeps.chunk_grid import chunk_shape
@@ -69,9 +76,13 @@ def _fill(path: Path, sweep: Sweep) -> None:
     model = build_model(wanted)
     group = zarr.create_group(path, zarr_format=ZARR_FORMAT, attributes=_attributes(sweep))
     _add_variables(group, sweep, model)
-    seeds = {"dims": _dims(sweep), "attributes": _attributes_of(SEED, model.units.names())}
+    units = model.units.names()
+    seeds = {"dims": _dims(sweep), "attributes": _attributes_of(SEED, units, None)}
     for name, values in derived_arrays(sweep).items():
-        options = seeds if name == SEED.name else {"dims": (name,)}
+        described = coordinate_attributes(scales_of(sweep.shared), name, units)
+        options: dict[str, Any] = (
+            seeds if name == SEED.name else {"dims": (name,), "attributes": described}
+        )
         # These follow from the sweep and are never written again.
         _add(group, name, values.dtype.str, values.shape, values.shape, **options)[...] = values
     group.attrs.update(seal_of(single_files(path)))
@@ -95,6 +106,7 @@ def _attributes(sweep: Sweep) -> dict[str, str]:
         "units": json.dumps(build_model(wanted).units.names()),
         "load": wanted.describe({axis.key for axis in sweep.axes}),
         "undula_format": FORMAT,
+        **scales_attributes(scales_of(sweep.shared)),
     }
 
 
@@ -125,7 +137,7 @@ def _add_variables(group: zarr.Group, sweep: Sweep, model: Model) -> None:
             (*sweep.shape, *inner),
             (*chunk, *inner),
             dims=(*dims, *inner_dims),
-            attributes=_attributes_of(column, units),
+            attributes=_attributes_of(column, units, scales_of(sweep.shared)),
         )
 
 
@@ -133,11 +145,12 @@ def _dims(sweep: Sweep) -> tuple[str, ...]:
     return (*(axis.key for axis in sweep.axes), REPLICATE)
 
 
-def _attributes_of(column: Column, units: dict[str, str]) -> dict[str, Any]:
+def _attributes_of(column: Column, units: dict[str, str], scales: Scales | None) -> dict[str, Any]:
     """Return the attributes of a variable."""
     attributes: dict[str, Any] = {"long_name": column.meaning}
     if column.quantity:
         attributes["units"] = units[column.quantity]
+        attributes |= physical_attributes(scales, column.quantity)
     if column is STATUS:
         attributes |= {
             "flag_values": list(range(len(STATUS_WORDS))),

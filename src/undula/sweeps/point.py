@@ -29,6 +29,7 @@ from undula.models.model import Model
 from undula.models.perturbation import perturbed
 from undula.schema.sweep_axes import DONE, FAILED
 from undula.schema.sweep_variables import LONGEST_TEXT
+from undula.storage.physical_attributes import with_physical_attributes
 from undula.storage.run_file import run_image
 from undula.storage.unchecked import StoredWarning
 from undula.sweeps.sweep import sweep_from_dump
@@ -233,5 +234,7 @@ def _stored(keep: str, run: Run, wanted: RunInput) -> Record:
         return {"shape_times": times, "shapes": shapes, "path": last_path(run)}
     if keep == "run":
         dataset = dataset_of(run, inputs=wanted.dump(), load=wanted.load_text)
+        names = run.model.units.names()
+        dataset = with_physical_attributes(dataset, wanted.scales, names)
         return {"image": run_image(dataset, run.checkpoint)}
     return {}

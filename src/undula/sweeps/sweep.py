@@ -169,9 +169,9 @@ def _checked_sweep(tables: Tables, checked: SweepInput, name: str) -> Sweep:
         raise InputError(
             f"{name} varies nothing; add a table [study] and [[study.axes]] with key and values"
         )
-    return _resolved_sweep(
-        checked.study, {name: tables.get(name, {}) for name in RunInput.model_fields}
-    )
+    # Without [units] a sweep has no such table, which would have defaults.
+    read = [name for name in RunInput.model_fields if name != "units" or name in tables]
+    return _resolved_sweep(checked.study, {name: tables.get(name, {}) for name in read})
 
 
 def sweep_from_dump(dumped: Mapping[str, Any]) -> Sweep:

@@ -7,6 +7,7 @@ import xarray as xr
 
 from undula.arrays import Array
 from undula.errors import InputError
+from undula.schema.physical_units import UNITS_PHYSICAL
 from undula.schema.sweep_axes import DONE, REPLICATE, verdicts_of
 
 #: Dimension of the verdicts.
@@ -109,6 +110,7 @@ def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
     )
     fraction = (hits / tries.where(tries > 0)).transpose(*hits.dims)
     tried = tries > 0
+    physical = {name: store.attrs[name] for name in (UNITS_PHYSICAL,) if name in store.attrs}
     return xr.Dataset(
         {
             "tries": tries,
@@ -117,5 +119,5 @@ def basins(store: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
             "low": low.where(tried),
             "high": high.where(tried),
         },
-        attrs={"confidence": confidence} | {"units": store.attrs.get("units", "{}")},
+        attrs={"confidence": confidence, "units": store.attrs.get("units", "{}"), **physical},
     )

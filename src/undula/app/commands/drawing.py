@@ -12,6 +12,7 @@ from undula.analysis.linear.straight_branch import StraightBranch
 from undula.analysis.solvers.threshold_record import Threshold
 from undula.analysis.states.branch import Branch
 from undula.errors import InputError
+from undula.models.scales import Scales
 from undula.storage.outputs import Claim
 from undula.terminal.meter import meter
 from undula.views import (
@@ -130,7 +131,13 @@ def check_straight(parameter: str) -> None:
 
 
 def draw_straight(
-    branch: StraightBranch, path: Path, claim: Claim, *, title: str, units: Mapping[str, str]
+    branch: StraightBranch,
+    path: Path,
+    claim: Claim,
+    *,
+    title: str,
+    units: Mapping[str, str],
+    scales: Scales | None,
 ) -> None:
     """Draw growth rate and frequency of the straight state over the force into a file.
 
@@ -142,7 +149,7 @@ def draw_straight(
     growth = GrowthCurve(
         branch.values, branch.rates, branch.frequencies, np.zeros_like(branch.rates), "spectral"
     )
-    save_figure(growth_figure(growth, title=title, units=units), path, claim)
+    save_figure(growth_figure(growth, title=title, units=units, scales=scales), path, claim)
 
 
 def draw_branches(
@@ -152,6 +159,7 @@ def draw_branches(
     claim: Claim,
     *,
     title: str,
+    scales: Scales | None,
 ) -> None:
     """Draw branches of states, with stored runs as dots, into a file.
 
@@ -160,7 +168,8 @@ def draw_branches(
     InputError
         The file cannot be written.
     """
-    save_figure(bifurcation_diagram(branches, title=title, runs=runs), path, claim)
+    figure = bifurcation_diagram(branches, title=title, runs=runs, scales=scales)
+    save_figure(figure, path, claim)
 
 
 def draw_thresholds(
@@ -172,6 +181,7 @@ def draw_thresholds(
     *,
     title: str,
     units: Mapping[str, str],
+    scales: Scales | None,
 ) -> None:
     """Draw a threshold along a parameter into a file.
 
@@ -186,7 +196,7 @@ def draw_thresholds(
         for field in ("value", "error")
     )
     curves = [(name, values, forces, errors)]
-    figure = threshold_curves(curves, parameter=along[0], title=title, units=units)
+    figure = threshold_curves(curves, parameter=along[0], title=title, units=units, scales=scales)
     save_figure(figure, path, claim)
 
 

@@ -10,10 +10,12 @@ from undula.analysis.states.periodic_record import Periodic
 from undula.analysis.states.records import Equilibrium, Spinning
 from undula.app.commands.find_start import SearchStart
 from undula.app.commands.sensitivity import with_sensitivities
-from undula.models.units import Units
+from undula.models.scales import Quantity, Scales
+from undula.models.units import FILAMENT_UNITS, Units
 from undula.terminal.numbers import BODY, CURE
 from undula.terminal.numbers import with_error as with_digits
 from undula.terminal.output import Answer
+from undula.terminal.physical import bracketed, scales_lines, with_physical
 from undula.terminal.progress import searching
 from undula.terminal.units_text import force_in, units_lines
 
@@ -25,6 +27,14 @@ _UNITS = {
     "leading_rate": "/T",
     "period": "T",
     "turn": "rad",
+}
+#: Quantities with a physical unit, by the unit of a filament.
+_QUANTITIES: dict[str, Quantity] = {
+    "cycles per T": "frequency",
+    "L": "length",
+    "/T": "rate",
+    "T": "time",
+    FILAMENT_UNITS.energy: "energy",
 }
 
 
@@ -57,14 +67,20 @@ def find_state(
         elif result is None:
             result = solver.find(model)
     if isinstance(result, NotFound):
-        return not_found(result, f"{title}: {kind}", model.units)
+        return _with_physical(not_found(result, f"{title}: {kind}", model.units), start.scales)
     answer = (
         _limit_answer(result) if isinstance(result, Converged) else state_answer(with_error(result))
     )
-    whole = Answer(answer, _text(title, answer, body=links_are_body(model)))
-    if not derivatives:
-        return whole
-    return with_sensitivities(whole, result.finest if isinstance(result, Converged) else result)
+    text = _text(title, answer, start.scales, body=links_are_body(model))
+    whole = Answer(answer, text)
+    if derivatives:
+        solved = result.finest if isinstance(result, Converged) else result
+        whole = with_sensitivities(whole, solved)
+    return _with_physical(whole, start.scales)
+
+
+def _with_physical(answer: Answer, scales: Scales | None) -> Answer:
+    return Answer(with_physical(answer.answer, "find", scales), answer.text)
 
 
 def not_found(failure: NotFound, title: str, units: Units) -> Answer:
@@ -144,10 +160,11 @@ def _links(links: int | list[int], *, body: bool) -> str:
     return f"{links}" if body else f"{links}; {CURE}"
 
 
-def _text(title: str, answer: dict[str, Any], *, body: bool) -> str:
+def _text(title: str, answer: dict[str, Any], scales: Scales | None, *, body: bool) -> str:
     errors = answer.get("errors", {}) | {"frequency": answer["error"]}
     word = "stable" if answer["stable"] else "unstable"
-    lines = [f"{title}: {answer['kind']}, {word}", *units_lines(answer["units"])]
+    units = [*units_lines(answer["units"]), *scales_lines(scales)]
+    lines = [f"{title}: {answer['kind']}, {word}", *units]
     by_name = _UNITS | {"bending_energy": answer["units"]["energy"]}
     for name, value in answer.items():
         unit = next((unit for start, unit in by_name.items() if name.startswith(start)), None)
@@ -158,10 +175,13 @@ def _text(title: str, answer: dict[str, Any], *, body: bool) -> str:
                 f"{part} {with_digits(number, errors.get(f'{name}_{part}'))}"
                 for part, number in value.items()
             ]
-            numbers = ", ".join(parts)
+            numbers, shown, error = ", ".join(parts), [value["min"], value["max"]], None
         else:
-            numbers = with_digits(value, errors.get(name))
-        lines.append(f"  {name.replace('_', ' '):<26} {numbers} {unit}")
+            error = errors.get(name)
+            numbers, shown = with_digits(value, error), [value]
+        quantity = _QUANTITIES.get(unit)
+        physical = bracketed(scales, quantity, *shown, error=error) if quantity else ""
+        lines.append(f"  {name.replace('_', ' '):<26} {numbers} {unit}{physical}")
     lines.append(f"  {'links':<26} {_links(answer['links'], body=body)}")
     lines.append(f"  {'residual':<26} {answer['residual']:.1g}")
     return "\n".join(lines)

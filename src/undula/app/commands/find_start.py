@@ -14,6 +14,7 @@ from undula.errors import InputError
 from undula.inputs.build import build_model
 from undula.inputs.input import ModelInput, changed_tables, read_model_input
 from undula.models.model import Model
+from undula.models.scales import Scales
 from undula.storage.run_file import load_result
 
 
@@ -30,12 +31,15 @@ class SearchStart:
         A stored run with its own model, from which `model` may differ in numbers.
     seed : int or None
         Seed of the run that is made without a stored one.
+    scales : Scales or None
+        SI values of the dimensionless units, None without ``[units]``.
     """
 
     model: Model
     title: str
     run: tuple[Model, xr.Dataset] | None = None
     seed: int | None = None
+    scales: Scales | None = None
 
     def motion(self) -> Periodic | NotFound | None:
         """Return the periodic motion that the run or the seed leads to, None without both."""
@@ -74,7 +78,7 @@ def start_of_search(
         raise InputError(f"{option} is for periodic motions; leave it out for {kind}")
     if run is None:
         wanted = read_model_input(file, changes)
-        return SearchStart(build_model(wanted), wanted.load_text, seed=seed)
+        return SearchStart(build_model(wanted), wanted.load_text, seed=seed, scales=wanted.scales)
     if file is not None or seed is not None:
         other = f"--seed {seed}" if file is None else file
         raise InputError(f"--run and {other} both say what to begin with; leave one of them out")
@@ -86,4 +90,5 @@ def start_of_search(
     except InputError as error:
         raise InputError(f"{run} holds no input that a command could read: {error}") from error
     wanted = changed_tables(ModelInput, read, changes)[1]
-    return SearchStart(build_model(wanted), wanted.load_text, run=(run_model, stored))
+    model = build_model(wanted)
+    return SearchStart(model, wanted.load_text, run=(run_model, stored), scales=wanted.scales)

@@ -1,6 +1,6 @@
 """`undula follow`: a branch of states along a parameter, in plain JSON types and as text."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from undula.analysis.linear.straight_branch import (
@@ -24,9 +24,11 @@ from undula.errors import InputError
 from undula.inputs.ranges import Way
 from undula.interrupts import interruptible
 from undula.models.model import Model
+from undula.models.scales import Scales
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, LINKS
 from undula.terminal.output import Answer
+from undula.terminal.physical import with_physical
 from undula.terminal.progress import approached
 from undula.terminal.units_text import force_in
 
@@ -35,7 +37,13 @@ _WORST_FIRST = ("interrupted", "not found", "stopped early", "done")
 
 
 def follow_along(
-    model: Model, kind: str, way: Way, *, converge: bool, title: str
+    model: Model,
+    kind: str,
+    way: Way,
+    *,
+    converge: bool,
+    title: str,
+    scales: Scales | None = None,
 ) -> tuple[Answer, Branch[Any] | StraightBranch | None]:
     """Follow a state along a parameter.
 
@@ -51,6 +59,8 @@ def follow_along(
         If true, extrapolate bifurcations to the limit of many links.
     title : str
         Beginning of the text.
+    scales : Scales or None
+        SI values of the dimensionless units; None for a text without physical units.
 
     Returns
     -------
@@ -64,7 +74,7 @@ def follow_along(
     """
     value_of(model, way.parameter)
     if kind == "straight":
-        return _straight(model, way, converge=converge, title=title)
+        return _straight(model, way, scales, converge=converge, title=title)
     with interruptible() as interrupted:
         if way.start is None:
             branch = _from_onset(model, kind, way, interrupted)
@@ -77,18 +87,24 @@ def follow_along(
     answer = branch_answer(shown, model.units, converge=converge and not early)
     if early:
         answer["status"] = "interrupted"
-    return branch_text(answer, f"{title}: {kind}", model.units), branch
+    return branch_text(answer, f"{title}: {kind}", model.units, scales), branch
 
 
 def follow_kinds(
-    model: Model, kinds: Sequence[str], way: Way, *, converge: bool, title: str
+    model: Model,
+    kinds: Sequence[str],
+    way: Way,
+    *,
+    converge: bool,
+    title: str,
+    scales: Scales | None = None,
 ) -> tuple[Answer, list[Any]]:
     """Follow states of one kind or of several kinds along a parameter.
 
     Parameters
     ----------
-    model, way, converge, title
-        As for `follow_along`.
+    model, way, converge, title, scales
+        As for `follow_along`; with scales the answer has physical numbers.
     kinds : sequence of str
         The kinds, at least one; each of several has its own answer in the list `branches`.
 
@@ -104,12 +120,18 @@ def follow_kinds(
     """
     answers, branches = {}, []
     for kind in kinds:
-        answers[kind], branch = follow_along(model, kind, way, converge=converge, title=title)
+        answers[kind], branch = follow_along(
+            model, kind, way, converge=converge, title=title, scales=scales
+        )
         branches += [] if branch is None else [branch]
         if answers[kind].answer["status"] == "interrupted":
             break
-    if len(kinds) == 1:
-        return answers[kinds[0]], branches
+    whole = answers[kinds[0]] if len(kinds) == 1 else _several(answers, model, way)
+    return Answer(with_physical(whole.answer, "follow", scales), whole.text), branches
+
+
+def _several(answers: Mapping[str, Answer], model: Model, way: Way) -> Answer:
+    """Return the answers on several kinds as one."""
     statuses = {answer.answer["status"] for answer in answers.values()}
     several = {
         "status": next(status for status in _WORST_FIRST if status in statuses),
@@ -117,11 +139,11 @@ def follow_kinds(
         "parameter": way.parameter,
         "branches": [{"kind": kind} | answer.answer for kind, answer in answers.items()],
     }
-    return Answer(several, "\n\n".join(answer.text for answer in answers.values())), branches
+    return Answer(several, "\n\n".join(answer.text for answer in answers.values()))
 
 
 def _straight(
-    model: Model, way: Way, *, converge: bool, title: str
+    model: Model, way: Way, scales: Scales | None, *, converge: bool, title: str
 ) -> tuple[Answer, StraightBranch]:
     if converge:
         raise InputError("the straight state is converged already; leave --converge out")
@@ -132,7 +154,7 @@ def _straight(
     if way.values is not None:
         shown = straight_at_values(model, straight, way.values)
     answer = straight_answer(shown, model)
-    return branch_text(answer, f"{title}: straight state", model.units), straight
+    return branch_text(answer, f"{title}: straight state", model.units, scales), straight
 
 
 def _from_onset(

@@ -15,7 +15,7 @@ from undula.analysis.maps.stability_boundaries import BOUNDARIES, StabilityBound
 from undula.analysis.parameters import FORCE
 from undula.app.commands.boundaries import boundaries_of
 from undula.app.commands.drawing import FORMATS, beside, check_figure_name, save_figure
-from undula.app.commands.plot_sweep_text import diagram_answer, diagram_text
+from undula.app.commands.plot_sweep_text import diagram_answer, diagram_text, scales_of_store
 from undula.errors import InputError
 from undula.inputs.ranges import parse_axis
 from undula.schema.sweep_axes import REPLICATE, chosen, varied
@@ -79,7 +79,7 @@ def plot_sweep(path: Path, request: PlotRequest, *, as_json: bool) -> int:
     if request.places:
         names = [_chosen_value(text)[0] for text in request.places]
         answer["at"] = {name: float(store[name].values[0]) for name in names}
-    reply(answer, diagram_text(answer), as_json=as_json)
+    reply(answer, diagram_text(answer, scales_of_store(store)), as_json=as_json)
     return DONE
 
 

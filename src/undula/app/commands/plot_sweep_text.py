@@ -1,5 +1,6 @@
 """The answer of `undula plot` on a stored sweep, in plain JSON types and for people."""
 
+import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -12,9 +13,12 @@ from undula.analysis.maps.stability_boundaries import BOUNDARIES, StabilityBound
 from undula.analysis.states.extrapolation import links_are_body
 from undula.inputs.build import build_model
 from undula.inputs.input import parse_input
+from undula.inputs.units_table import scales_of
+from undula.models.scales import Scales
 from undula.schema.sweep_axes import DONE, FAILED, verdicts_of
 from undula.sweeps.boundary_cache import tables_of
 from undula.terminal.numbers import BODY, LINKS
+from undula.terminal.physical import bracketed, scales_lines, with_physical
 
 #: Most lines of each kind in the answer for people; the JSON answer has all.
 _MOST_LINES = 20
@@ -65,21 +69,36 @@ def diagram_answer(
                 for point in contradicting
             ],
         }
-    return answer if shares is None else answer | {"basins": list(_basins(shares))}
+    basins = {} if shares is None else {"basins": list(_basins(shares))}
+    return with_physical(answer | basins, "plot", scales_of_store(store))
 
 
-def diagram_text(answer: Mapping[str, Any]) -> str:
-    """Return the answer for people; `answer` is as `diagram_answer` returns it, with its figure."""
+def scales_of_store(store: xr.Dataset) -> Scales | None:
+    """Return the scales of a stored sweep, None without ``[units]`` in its input."""
+    return scales_of(json.loads(store.attrs["study"]))
+
+
+def diagram_text(answer: Mapping[str, Any], scales: Scales | None = None) -> str:
+    """Return the answer for people.
+
+    Parameters
+    ----------
+    answer
+        The answer as `diagram_answer` returns it, with its figure.
+    scales
+        SI values of the dimensionless units; None for a text without physical units.
+    """
     missing = answer["points"] - answer["done"] - answer["failed"]
     counts = [f"{answer['done']} of {answer['points']} points done"]
     counts += [f"{answer['failed']} failed"] * bool(answer["failed"])
     counts += [f"{missing} to go"] * bool(missing)
-    lines = [answer["figure"], f"  {', '.join(counts)}"]
+    lines = [answer["figure"], *scales_lines(scales), f"  {', '.join(counts)}"]
     lines += [f"  {count:>6} {verdict}" for verdict, count in answer["verdicts"].items()]
     if answer.get("error_of") == LINKS and answer["links"] is not None:
         lines.append(f"  borders of {answer['links']} links, as the runs are of")
     for name, points in answer.get("borders", {}).items():
-        lines += _listed(f"{name}:", list(_boundary_lines(points, answer["parameter"])))
+        boundary = list(_boundary_lines(points, answer["parameter"], scales))
+        lines += _listed(f"{name}:", boundary)
     if "disagreements" in answer:
         lines += _contradiction_lines(answer["disagreements"])
     several = [basin for basin in answer.get("basins", ()) if len(basin["verdicts"]) > 1]
@@ -118,7 +137,9 @@ def _basins(shares: xr.Dataset) -> Iterator[dict[str, Any]]:
             }
 
 
-def _boundary_lines(points: Sequence[Mapping[str, Any]], parameter: str | None) -> Iterator[str]:
+def _boundary_lines(
+    points: Sequence[Mapping[str, Any]], parameter: str | None, scales: Scales | None
+) -> Iterator[str]:
     if all(point["force"] is None for point in points):
         # The reason is the same at all points.
         yield f"none: {points[0]['reason']}"
@@ -126,7 +147,7 @@ def _boundary_lines(points: Sequence[Mapping[str, Any]], parameter: str | None) 
     for point in points:
         place = "" if parameter is None else f"{point[parameter]:>12.6g}  "
         force = f"none: {point['reason']}" if point["force"] is None else f"{point['force']:.7g}"
-        yield f"{place}{force}"
+        yield f"{place}{force}{bracketed(scales, 'force', point['force'])}"
 
 
 def _contradiction_lines(points: Sequence[Mapping[str, Any]]) -> list[str]:

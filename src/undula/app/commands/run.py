@@ -16,6 +16,7 @@ from undula.analysis.runs.run import Run
 from undula.app.commands.run_job import RunJob
 from undula.errors import InputError
 from undula.interrupts import interruptible
+from undula.storage.physical_attributes import with_physical_attributes
 from undula.storage.run_file import write_run
 from undula.terminal.compile_notice import compilation_announced
 from undula.terminal.meter import Meter, meter
@@ -82,6 +83,7 @@ def compute(job: RunJob, budget: float, *, lyapunov: bool) -> Computed:
 def store(job: RunJob, run: Run) -> None:
     """Write the result of a run so far, whole or not at all."""
     dataset = dataset_of(run, inputs=job.wanted.dump(), load=job.wanted.load_text)
+    dataset = with_physical_attributes(dataset, job.wanted.scales, run.model.units.names())
     write_run(job.result, dataset, run.checkpoint, overwrite=True)
 
 

@@ -16,6 +16,7 @@ from undula.errors import InputError
 from undula.storage.outputs import Claim, discard
 from undula.storage.run_file import load_result
 from undula.terminal.output import DONE, STOPPED_EARLY, notice, reply
+from undula.terminal.physical import with_physical
 
 _VIEWS = (("figure", draw_figure), ("movie", draw_movie))
 _ENDED_WELL = (Ending.DONE, Ending.SETTLED, Ending.SOLVED, Ending.IRREGULAR, Ending.LIMIT)
@@ -67,7 +68,8 @@ def finish(
     answer = json.loads(stored.attrs["summary"]) | _seed(job)
     answer |= {"seconds": computed.seconds, "output": str(job.result)} | made
     _report_early_end(job, computed.without)
-    reply(answer, run_text(answer), as_json=as_json)
+    scales = job.wanted.scales
+    reply(with_physical(answer, "run", scales), run_text(answer, scales), as_json=as_json)
     return DONE if complete and job.simulation.ending in _ENDED_WELL else STOPPED_EARLY
 
 

@@ -20,6 +20,7 @@ from undula.inputs.input import StabilityInput
 from undula.models.model import Model
 from undula.models.units import Units
 from undula.terminal.output import Answer
+from undula.terminal.physical import with_physical
 from undula.terminal.progress import counted
 from undula.terminal.units_text import force_in
 
@@ -63,8 +64,8 @@ def analyse(request: StabilityRequest) -> tuple[Answer, Callable[[], Any]]:
         analysed, draw = _thresholds_along(request, *request.along)
     else:
         analysed, draw = _onset(request)
-    head = {"status": "done", "load": _title(request)}
-    return Answer(head | analysed.answer, analysed.text), draw
+    answer = {"status": "done", "load": _title(request)} | analysed.answer
+    return Answer(with_physical(answer, "stability", request.wanted.scales), analysed.text), draw
 
 
 def _onset(request: StabilityRequest) -> tuple[Answer, Callable[[], Any]]:
@@ -78,11 +79,17 @@ def _onset(request: StabilityRequest) -> tuple[Answer, Callable[[], Any]]:
         far = _BEYOND * max(straight_onset.force or 0.0, at_force.force, 1.0)
         growth = growth_curve(model, np.linspace(0.0, far, _SHOWN), **options)
         return stability_portrait(
-            straight_onset, growth, at_force, title=title, units=units.names()
+            straight_onset,
+            growth,
+            at_force,
+            title=title,
+            units=units.names(),
+            scales=request.wanted.scales,
         )
 
     answer = onset_answer(straight_onset, at_force, units)
-    return Answer(answer, text.onset_text(title, straight_onset, at_force, units)), draw
+    scales = request.wanted.scales
+    return Answer(answer, text.onset_text(title, straight_onset, at_force, units, scales)), draw
 
 
 def _growth(request: StabilityRequest, forces: Values) -> tuple[Answer, Callable[[], Any]]:
@@ -97,9 +104,11 @@ def _growth(request: StabilityRequest, forces: Values) -> tuple[Answer, Callable
     def draw() -> Any:
         from undula.views import growth_figure
 
-        return growth_figure(growth, title=title, units=units.names())
+        scales = request.wanted.scales
+        return growth_figure(growth, title=title, units=units.names(), scales=scales)
 
-    return Answer(growth_answer(growth, units), text.growth_text(title, growth, units)), draw
+    lines = text.growth_text(title, growth, units, request.wanted.scales)
+    return Answer(growth_answer(growth, units), lines), draw
 
 
 def _thresholds_along(
@@ -115,9 +124,11 @@ def _thresholds_along(
     def draw() -> Any:
         from undula.views import threshold_figure
 
-        return threshold_figure(curve, title=title, units=model.units.names())
+        names, scales = model.units.names(), request.wanted.scales
+        return threshold_figure(curve, title=title, units=names, scales=scales)
 
-    return Answer(thresholds_answer(curve, units), text.thresholds_text(title, curve, units)), draw
+    lines = text.thresholds_text(title, curve, units, request.wanted.scales)
+    return Answer(thresholds_answer(curve, units), lines), draw
 
 
 def onset_answer(onset: Onset, at_force: Spectrum, units: Units) -> dict[str, Any]:

@@ -6,26 +6,31 @@ import numpy as np
 
 from undula.analysis.linear.curves import CriticalCurve, GrowthCurve
 from undula.analysis.linear.results import Crossing, Onset, Spectrum
+from undula.models.scales import Scales
 from undula.models.units import Units
 from undula.terminal.numbers import with_error
+from undula.terminal.physical import bracketed, scales_lines
 from undula.terminal.units_text import units_lines
 
 #: Unit of time of rates and frequencies; that of the paper's equation is shorter by the drag ratio.
 _TIME = {False: "T", True: "(T/gamma)"}
 
 
-def onset_text(title: str, onset: Onset, at_force: Spectrum, units: Units) -> str:
+def onset_text(
+    title: str, onset: Onset, at_force: Spectrum, units: Units, scales: Scales | None = None
+) -> str:
     """Return thresholds, later crossings and the spectrum at the given force, one in each line."""
-    lines = list(_onset_lines(onset, at_force, units))
+    lines = list(_onset_lines(onset, at_force, units, scales))
     width = max(len(name) for name, _ in lines)
     head = [
         f"{title}: stability of the straight state, method {onset.method}",
         *units_lines(units.names(), units.forces),
+        *scales_lines(scales),
     ]
     return "\n".join([*head, *(f"  {name:<{width}}  {content}" for name, content in lines)])
 
 
-def growth_text(title: str, growth: GrowthCurve, units: Units) -> str:
+def growth_text(title: str, growth: GrowthCurve, units: Units, scales: Scales | None = None) -> str:
     """Return leading rates and frequencies as a table."""
     places = list(np.ndindex(growth.rates.shape))
     columns: list[tuple[str, Sequence[str]]] = []
@@ -43,10 +48,12 @@ def growth_text(title: str, growth: GrowthCurve, units: Units) -> str:
         f"{title}: leading eigenvalue, rates per {unit}, frequencies in cycles per {unit}, method"
         f" {growth.method}"
     )
-    return "\n".join([head, *units_lines(units.names()), _table(columns)])
+    return "\n".join([head, *units_lines(units.names()), *scales_lines(scales), _table(columns)])
 
 
-def thresholds_text(title: str, curve: CriticalCurve, units: Sequence[Units]) -> str:
+def thresholds_text(
+    title: str, curve: CriticalCurve, units: Sequence[Units], scales: Scales | None = None
+) -> str:
     """Return thresholds along a parameter as a table, with the units of the model at each value."""
     unit, first = _TIME[curve.onsets[0].paper_time], units[0]
     hopf = [own_units.force_in(force) for own_units, force in zip(units, curve.forces, strict=True)]
@@ -63,32 +70,49 @@ def thresholds_text(title: str, curve: CriticalCurve, units: Sequence[Units]) ->
         f"{title}: thresholds of the straight state in {first.force} and cycles per {unit}, method"
         f" {curve.method}"
     )
-    return "\n".join([head, *units_lines(first.names(), first.forces), _table(columns)])
+    lines = [*units_lines(first.names(), first.forces), *scales_lines(scales)]
+    return "\n".join([head, *lines, _table(columns)])
 
 
-def _onset_lines(onset: Onset, at_force: Spectrum, units: Units) -> Iterator[tuple[str, str]]:
+def _onset_lines(
+    onset: Onset, at_force: Spectrum, units: Units, scales: Scales | None
+) -> Iterator[tuple[str, str]]:
     unit = _TIME[onset.paper_time]
+
+    def force(value: float, error: float | None) -> str:
+        return f"{_force(value, error, units)}{bracketed(scales, 'force', value, error=error)}"
+
     if onset.oscillatory_force is not None:
-        yield "rings from", _force(onset.oscillatory_force, onset.oscillatory_error, units)
+        yield "rings from", force(onset.oscillatory_force, onset.oscillatory_error)
     if onset.hopf is None:
         yield "oscillates", f"never: {onset}"
     else:
-        yield "oscillates from", _force(onset.hopf.force, onset.hopf.error, units)
-        yield from _crossing_lines(onset.hopf, unit, units.force)
+        yield "oscillates from", force(onset.hopf.force, onset.hopf.error)
+        yield from _crossing_lines(onset.hopf, unit, units.force, scales)
     for crossing in onset.later:
         change = "joins" if crossing.growth_slope > 0.0 else "calms down"
         yield (
             "later",
-            f"at {_force(crossing.force, crossing.error, units)} a pair of"
-            f" {crossing.frequency:.6g} cycles per {unit} {change}",
+            f"at {force(crossing.force, crossing.error)} a pair of"
+            f" {crossing.frequency:.6g} cycles per {unit}"
+            f"{bracketed(scales, 'frequency', crossing.frequency)} {change}",
         )
+    yield from _spectrum_lines(at_force, unit, scales)
+
+
+def _spectrum_lines(
+    at_force: Spectrum, unit: str, scales: Scales | None
+) -> Iterator[tuple[str, str]]:
     for value, error in zip(at_force.values, at_force.errors, strict=True):
         if value.imag < 0.0:
             continue  # the complex conjugate is listed
-        rate = f"rate {_rate(float(value.real), float(error))} per {unit}"
-        turn = 2.0 * np.pi
-        frequency = with_error(value.imag / turn, error / turn) if value.imag > 0.0 else ""
-        line = f"{rate}, {frequency} cycles per {unit}" if frequency else rate
+        growth, spread = float(value.real), float(error)
+        line = f"rate {_rate(growth, spread)} per {unit}"
+        line += bracketed(scales, "rate", growth, error=spread)
+        if value.imag > 0.0:
+            frequency, spread = float(value.imag) / (2.0 * np.pi), spread / (2.0 * np.pi)
+            line += f", {with_error(frequency, spread)} cycles per {unit}"
+            line += bracketed(scales, "frequency", frequency, error=spread)
         yield f"at {at_force.force:.6g}", line
 
 
@@ -96,9 +120,12 @@ def _force(force: float, error: float | None, units: Units) -> str:
     return f"{with_error(force, error)} {units.force}{units.bracketed(force)}"
 
 
-def _crossing_lines(crossing: Crossing, unit: str, force_unit: str) -> Iterator[tuple[str, str]]:
-    frequency = with_error(crossing.frequency, crossing.frequency_error)
-    yield "frequency", f"{frequency} cycles per {unit}"
+def _crossing_lines(
+    crossing: Crossing, unit: str, force_unit: str, scales: Scales | None
+) -> Iterator[tuple[str, str]]:
+    value, error = crossing.frequency, crossing.frequency_error
+    physical = bracketed(scales, "frequency", value, error=error)
+    yield "frequency", f"{with_error(value, error)} cycles per {unit}{physical}"
     yield "growth slope", f"{crossing.growth_slope:.6g} per {unit} and {force_unit}"
 
 

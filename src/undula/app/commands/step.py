@@ -30,6 +30,7 @@ from undula.storage.ramp_file import (
 )
 from undula.terminal.compile_notice import compilation_announced
 from undula.terminal.output import DONE, STOPPED_EARLY, Form, notice, reply
+from undula.terminal.physical import with_physical
 from undula.terminal.progress import searching, stepped
 from undula.views import ramp_diagram
 
@@ -101,7 +102,8 @@ def plan(
     course = Ramp(parameter, values, back=back, kick=kick, seed=seed)
     model = build_model(wanted)
     course.models(model)
-    return Series(wanted.dump(), wanted.describe({course.parameter}), model, course), remark
+    load = wanted.describe({course.parameter})
+    return Series(wanted.dump(), load, model, course, wanted.scales), remark
 
 
 def run_ramp(job: RampJob, form: Form, *, budget: float) -> int:
@@ -153,6 +155,7 @@ def run_ramp(job: RampJob, form: Form, *, budget: float) -> int:
     answer = step_answer(job.series, steps, thresholds)
     answer |= {"status": status, "store": str(job.result) if steps else None, "figure": drawn}
     complete = _report_failures(job, status, steps) and drawn is not None
+    answer = with_physical(answer, "step", job.wanted.scales)
     text = ramp_table(answer) if form is Form.CSV else step_text(job.series, answer)
     reply(answer, text, as_json=form is Form.JSON)
     return DONE if complete else STOPPED_EARLY

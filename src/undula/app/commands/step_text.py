@@ -16,9 +16,11 @@ from undula.analysis.ramps.regime_changes import (
 )
 from undula.analysis.solvers.threshold_record import Threshold
 from undula.app.commands.threshold import force_text, links_text, threshold_answer
+from undula.models.scales import Scales
 from undula.models.units import Units
 from undula.storage.ramp_file import Series
 from undula.terminal.output import JsonAnswer
+from undula.terminal.physical import of_parameter, scales_lines
 from undula.terminal.units_text import units_lines
 
 _ARRAYS = ("nodes", "shape_times", "shapes")
@@ -57,12 +59,15 @@ def step_answer(
 def step_text(series: Series, answer: JsonAnswer) -> str:
     """Return regimes, hysteresis, thresholds and files, one in each line."""
     course, parameter, units = series.ramp, answer["parameter"], series.model.units
+    scales = series.scales
     back = " and back" if course.back else ""
     count = f"{len(answer['steps'])} of {len(course.targets)} steps, {answer['status']}"
-    interval = f"{parameter} from {course.values[0]:.6g} to {course.values[-1]:.6g}{back}"
+    ends = course.values[0], course.values[-1]
+    interval = f"{parameter} from {ends[0]:.6g} to {ends[1]:.6g}{back}"
     further = units.forces if answer["thresholds"] else ()
-    head = [f"{answer['load']}: {interval}, {count}", *units_lines(units.names(), further)]
-    lines = list(_lines(answer, units))
+    heading = f"{answer['load']}: {interval}{of_parameter(scales, parameter, *ends)}, {count}"
+    head = [heading, *units_lines(units.names(), further), *scales_lines(scales)]
+    lines = list(_lines(answer, units, scales))
     width = max(len(name) for name, _ in lines)
     return "\n".join([*head, *(f"  {name:<{width}}  {text}" for name, text in lines)])
 
@@ -85,24 +90,27 @@ def _threshold(
     }
 
 
-def _lines(answer: JsonAnswer, units: Units) -> Iterator[tuple[str, str]]:
-    unit = f" {units.force}" if answer["parameter"] == FORCE else ""
+def _lines(answer: JsonAnswer, units: Units, scales: Scales | None) -> Iterator[tuple[str, str]]:
+    parameter = answer["parameter"]
+    unit = f" {units.force}" if parameter == FORCE else ""
     direction = ""
     for regime in answer["regimes"]:
         count = f"{regime['steps']} step{'' if regime['steps'] == 1 else 's'}"
         name = regime["direction"] if regime["direction"] != direction else ""
-        interval = f"{_span(regime['start'], regime['end'])}{unit}"
+        ends = regime["start"], regime["end"]
+        interval = f"{_span(*ends)}{unit}{of_parameter(scales, parameter, *ends)}"
         yield name, f"{interval}: {regime['verdict']}, {count}"
         direction = regime["direction"]
     directions = {regime["direction"] for regime in answer["regimes"]}
     if len(directions) > 1 and not answer["hysteresis"]:
         yield "hysteresis", "none: up and down agree at every value"
     for place, loop in enumerate(answer["hysteresis"]):
-        interval = f"{_span(loop['low'], loop['high'])}{unit}"
+        ends = loop["low"], loop["high"]
+        interval = f"{_span(*ends)}{unit}{of_parameter(scales, parameter, *ends)}"
         text = f"{interval}: {loop['up']} on the way up, {loop['down']} on the way down"
         yield "" if place else "hysteresis", text
     for threshold in answer["thresholds"] or ():
-        yield threshold["threshold"], _threshold_text(threshold, units)
+        yield threshold["threshold"], _threshold_text(threshold, units, scales)
     yield "steps", answer["store"] or "none"
     yield "figure", answer["figure"] or "none"
 
@@ -111,10 +119,11 @@ def _span(start: float, end: float) -> str:
     return f"{start:.6g}" if start == end else f"{start:.6g} to {end:.6g}"
 
 
-def _threshold_text(threshold: JsonAnswer, units: Units) -> str:
+def _threshold_text(threshold: JsonAnswer, units: Units, scales: Scales | None) -> str:
     if threshold["value"] is None:
         return f"none: {threshold['reason']}"
-    text = f"{force_text(threshold, units)} ({threshold['bifurcation']}){links_text(threshold)}"
+    force = force_text(threshold, units, scales)
+    text = f"{force} ({threshold['bifurcation']}){links_text(threshold)}"
     change = threshold["nearest_change"]
     if change is None:
         return f"{text}; no change of regime to compare with"

@@ -1,5 +1,6 @@
 """`undula sweep` and `undula status`: compute the missing points of a sweep, and report on it."""
 
+import json
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ from typing import Any
 from undula.app.commands.sweep_text import sweep_answer, sweep_text
 from undula.app.tables import sweep_table
 from undula.errors import InputError
+from undula.inputs.units_table import scales_of
 from undula.sweeps.compute import compute
 from undula.sweeps.own_workers import workers_that_fit
 from undula.sweeps.store import SweepStore, load_sweep, open_sweep
@@ -97,7 +99,7 @@ def run_sweep(
     answer = sweep_answer(load_sweep(store.path, shapes=False))
     answer |= {"status": status, "seconds": time.monotonic() - began, "store": str(store.path)}
     _report_failures(answer, store)
-    reply(answer, sweep_text(answer), as_json=as_json)
+    reply(answer, sweep_text(answer, scales_of(store.sweep.shared)), as_json=as_json)
     return DONE if status == "done" and not work.failed else STOPPED_EARLY
 
 
@@ -111,7 +113,8 @@ def report_status(path: Path, form: Form) -> int:
     """
     stored = load_sweep(path, shapes=False)
     answer = sweep_answer(stored) | {"store": str(path)}
-    text = sweep_table(stored) if form is Form.CSV else sweep_text(answer)
+    scales = scales_of(json.loads(stored.attrs["study"]))
+    text = sweep_table(stored) if form is Form.CSV else sweep_text(answer, scales)
     reply(answer, text, as_json=form is Form.JSON)
     return DONE
 

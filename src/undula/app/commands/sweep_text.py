@@ -7,8 +7,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from undula.inputs.units_table import scales_of
+from undula.models.scales import Scales
 from undula.schema.sweep_axes import DONE, FAILED
 from undula.sweeps.sweep import Sweep, sweep_from_dump
+from undula.terminal.physical import of_parameter, scales_lines, with_physical
 
 #: Number of failures that are listed one by one.
 MOST_FAILURES = 5
@@ -27,7 +30,7 @@ def sweep_answer(stored: xr.Dataset) -> dict[str, Any]:
     done, failed = int((status == DONE).sum()), int((status == FAILED).sum())
     words, counts = np.unique(stored["verdict"].values.ravel()[status == DONE], return_counts=True)
     by_number = sorted(zip(counts.tolist(), words.tolist(), strict=True), reverse=True)
-    return {
+    answer = {
         "status": "done" if done + failed == sweep.count else "unfinished",
         "load": stored.attrs["load"],
         "units": json.loads(stored.attrs["units"]),
@@ -45,18 +48,21 @@ def sweep_answer(stored: xr.Dataset) -> dict[str, Any]:
         "verdicts": {word: count for count, word in by_number},
         "failures": _failures(stored, sweep, np.flatnonzero(status == FAILED)[:MOST_FAILURES]),
     }
+    return with_physical(answer, "sweep", scales_of(sweep.shared))
 
 
-def sweep_text(answer: Mapping[str, Any]) -> str:
+def sweep_text(answer: Mapping[str, Any], scales: Scales | None = None) -> str:
     """Return the state of a stored sweep for people, one fact in each line.
 
     Parameters
     ----------
     answer
         The state as `sweep_answer` returns it, with the key "store".
+    scales
+        SI values of the dimensionless units; None for a text without physical units.
     """
     counts = answer["points"]
-    lines = [("axis", _axis_text(axis)) for axis in answer["axes"]]
+    lines = [("axis", _axis_text(axis, scales)) for axis in answer["axes"]]
     if answer["tries"] > 1:
         lines.append(("tries", str(answer["tries"])))
     lines.append(("points", f"{counts['done']} of {counts['all']} done"))
@@ -65,8 +71,8 @@ def sweep_text(answer: Mapping[str, Any]) -> str:
     lines += [("verdicts" if k == 0 else "", line) for k, line in enumerate(_verdicts(answer))]
     lines += [("failures" if k == 0 else "", line) for k, line in enumerate(_failure_lines(answer))]
     lines.append(("store", answer["store"]))
-    head = f"{answer['load']}: {answer['status']}"
-    return "\n".join([head, *(f"  {name:<8}  {text}" for name, text in lines)])
+    head = [f"{answer['load']}: {answer['status']}", *scales_lines(scales)]
+    return "\n".join([*head, *(f"  {name:<8}  {text}" for name, text in lines)])
 
 
 def _axis(key: str, values: tuple[int | float, ...]) -> dict[str, Any]:
@@ -86,9 +92,10 @@ def _failures(stored: xr.Dataset, sweep: Sweep, numbers: Any) -> list[dict[str, 
     return failures
 
 
-def _axis_text(axis: Mapping[str, Any]) -> str:
+def _axis_text(axis: Mapping[str, Any], scales: Scales | None) -> str:
     values = "1 value" if axis["count"] == 1 else f"{axis['count']} values"
-    return f"{axis['key']} from {axis['first']:.6g} to {axis['last']:.6g}, {values}"
+    physical = of_parameter(scales, axis["key"], axis["first"], axis["last"])
+    return f"{axis['key']} from {axis['first']:.6g} to {axis['last']:.6g}{physical}, {values}"
 
 
 def _verdicts(answer: Mapping[str, Any]) -> list[str]:

@@ -9,9 +9,11 @@ from undula.analysis.solvers.thresholds import single_threshold, threshold_curve
 from undula.app.commands.sensitivity import with_sensitivities
 from undula.interrupts import interruptible
 from undula.models.model import Model
+from undula.models.scales import Scales
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, CURE, digits, on_links, with_error
 from undula.terminal.output import Answer
+from undula.terminal.physical import bracketed, scales_lines, with_physical
 from undula.terminal.progress import counted, searching
 from undula.terminal.units_text import force_in, units_lines
 
@@ -27,6 +29,7 @@ def answer_threshold(
     up_to: float | None,
     title: str,
     derivatives: bool = False,
+    scales: Scales | None = None,
 ) -> Answer:
     """Return the answer for one threshold.
 
@@ -44,6 +47,8 @@ def answer_threshold(
         Beginning of the text.
     derivatives : bool
         If true, add the derivatives of force and frequency by all parameters.
+    scales : Scales or None
+        SI values of the dimensionless units; None for an answer without physical units.
     """
     with searching(name) as progress:
         result = single_threshold(model, name, converged=converge, up_to=up_to, progress=progress)
@@ -51,12 +56,15 @@ def answer_threshold(
     answer = {"status": "done", "units": units.names(), "threshold": name}
     answer |= threshold_answer(result, units)
     lines = [
-        f"{title}: {name} {_line(answer, units)}",
+        f"{title}: {name} {_line(answer, units, scales)}",
         *_cure([answer]),
         *units_lines(units.names(), units.forces),
+        *scales_lines(scales),
     ]
     whole = Answer(answer, "\n".join(lines))
-    return with_sensitivities(whole, result) if derivatives and result else whole
+    if derivatives and result:
+        whole = with_sensitivities(whole, result)
+    return Answer(with_physical(whole.answer, "threshold", scales), whole.text)
 
 
 def answer_threshold_curve(
@@ -67,6 +75,7 @@ def answer_threshold_curve(
     converge: bool,
     up_to: float | None,
     title: str,
+    scales: Scales | None = None,
 ) -> tuple[Answer, ThresholdCurve]:
     """Return the answer for a threshold along a second parameter, and the thresholds.
 
@@ -84,7 +93,8 @@ def answer_threshold_curve(
             progress=progress,
             stop=interrupted,
         )
-    return _curve_answer(model, name, along, curve, title), curve
+    answer, lines = _curve_answer(model, name, along, curve, (title, scales))
+    return Answer(with_physical(answer, "threshold", scales), "\n".join(lines)), curve
 
 
 def _curve_answer(
@@ -92,10 +102,10 @@ def _curve_answer(
     name: str,
     along: tuple[str, tuple[float, ...]],
     curve: ThresholdCurve,
-    title: str,
-) -> Answer:
-    """Return the answer for the thresholds that were found along a second parameter."""
-    parameter, values = along
+    heading: tuple[str, Scales | None],
+) -> tuple[dict[str, Any], list[str]]:
+    """Return the answer and the lines for the thresholds found along a second parameter."""
+    (parameter, values), (title, scales) = along, heading
     done = len(curve) == len(values)
     # A chain of other links has other further units.
     units = [changed(model, parameter, value).units for value in values[: len(curve)]]
@@ -112,10 +122,11 @@ def _curve_answer(
     lines = [
         f"{title}: {name} along {parameter}",
         *units_lines(names, model.units.forces),
-        *(f"  {value:>12.6g}  {_line(row, own)}" for value, row, own in rows),
+        *scales_lines(scales),
+        *(f"  {value:>12.6g}  {_line(row, own, scales)}" for value, row, own in rows),
         *_cure(answers),
     ]
-    return Answer(answer, "\n".join(lines))
+    return answer, lines
 
 
 def threshold_answer(result: Threshold, units: Units) -> dict[str, Any]:
@@ -140,14 +151,15 @@ def _links(result: Threshold) -> int | list[int] | None:
     return result.links[0] if len(result.links) == 1 else list(result.links) or None
 
 
-def force_text(answer: Mapping[str, Any], units: Units) -> str:
+def force_text(answer: Mapping[str, Any], units: Units, scales: Scales | None) -> str:
     """Return the force of a threshold's answer, with its error if that is known."""
     value, error = answer["value"], answer["error"]
     if error is None:
         text = on_links(value, answer["solver_error"], answer["links"], units.force)
     else:
         text = f"{with_error(value, error)} {units.force}"
-    return f"{text}{units.bracketed(value)}"
+    physical = bracketed(scales, "force", value, error=error)
+    return f"{text}{units.bracketed(value)}{physical}"
 
 
 def links_text(answer: Mapping[str, Any]) -> str:
@@ -165,13 +177,14 @@ def _is_of_few(answer: Mapping[str, Any]) -> bool:
     return differs and isinstance(answer["links"], int)
 
 
-def _line(answer: Mapping[str, Any], units: Units) -> str:
+def _line(answer: Mapping[str, Any], units: Units, scales: Scales | None) -> str:
     if answer["value"] is None:
         farther = "" if answer["searched_to"] is None else f"; {_FARTHER}"
         return f"none: {answer['reason']}{farther}"
+    physical = bracketed(scales, "frequency", answer["frequency"])
     return (
-        f"at force {force_text(answer, units)} ({answer['bifurcation']}),"
-        f" {answer['frequency']:.7g} cycles per T{links_text(answer)}"
+        f"at force {force_text(answer, units, scales)} ({answer['bifurcation']}),"
+        f" {answer['frequency']:.7g} cycles per T{physical}{links_text(answer)}"
     )
 
 

@@ -6,17 +6,9 @@ from typing import Any
 
 from undula.errors import InputError
 from undula.models.scales import Quantity, Scales
+from undula.schema.physical_units import SHOWN_IN
 
-#: Name and SI value of the physical unit of each quantity.
-SHOWN_IN: Mapping[Quantity, tuple[str, float]] = {
-    "length": ("um", 1e-6),
-    "time": ("s", 1.0),
-    "frequency": ("Hz", 1.0),
-    "force": ("pN", 1e-12),
-    "force_density": ("pN/um", 1e-6),
-    "energy": ("pN um", 1e-18),
-}
-#: Name of the dimensionless unit of each quantity.
+#: Name of the dimensionless unit of each quantity that the command converts.
 UNIT: Mapping[Quantity, str] = {
     "length": "L",
     "time": "T",
@@ -140,12 +132,12 @@ def units_text(scales: Scales, converted: list[Converted]) -> str:
 
 
 def _all_units(scales: Scales) -> Iterator[tuple[Quantity, Converted]]:
-    for quantity in SHOWN_IN:
+    for quantity in UNIT:
         yield quantity, _to_physical(scales, quantity, 1.0)
 
 
 def _to_physical(scales: Scales, quantity: Quantity, value: float) -> Converted:
-    return Converted(quantity, value, scales.to_si(quantity, value) / SHOWN_IN[quantity][1])
+    return Converted(quantity, value, scales.physical(quantity, value)[0])
 
 
 def _from_physical(scales: Scales, quantity: Quantity, value: float) -> Converted:

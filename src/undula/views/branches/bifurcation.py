@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from undula.analysis.states.branch import Branch
 from undula.errors import InputError
+from undula.models.scales import Scales
 from undula.views.branches.named_branches import (
     DASHES,
     WIDTH,
@@ -35,7 +36,11 @@ _MARGIN = 0.02
 
 
 def bifurcation_diagram(
-    branches: Sequence[Branch[Any]], *, title: str, runs: Sequence[xr.Dataset] = ()
+    branches: Sequence[Branch[Any]],
+    *,
+    title: str,
+    runs: Sequence[xr.Dataset] = (),
+    scales: Scales | None = None,
 ) -> Figure:
     """Draw states along a parameter, with their stability and their bifurcations.
 
@@ -48,6 +53,8 @@ def bifurcation_diagram(
     runs : sequence of xarray.Dataset
         Stored runs to compare with, as `undula.load_result` returns them. Runs that end straight,
         have no frequency, lack the parameter or have other units are only counted in a note.
+    scales : Scales, optional
+        SI values of the dimensionless units, which the labels then state.
 
     Returns
     -------
@@ -71,7 +78,7 @@ def bifurcation_diagram(
     drawn = named_branches(branches)
     points = stored_points(runs, parameter, units)
     span = _span([*(branch.line.values for branch in drawn), [point.value for point in points]])
-    with style.figure_style():
+    with style.figure_style(scales):
         figure = style.headed_figure(title, paper_time=False)
         top = label_above(figure, _labels(drawn, span), _LEFT, _RIGHT)
         grid = figure.add_gridspec(

@@ -5,17 +5,20 @@ of colour blindness and in grey print. Shapes in the course of time are coloured
 pale to dark.
 """
 
-from collections.abc import Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
+from undula.models.scales import Scales
 from undula.models.units import FILAMENT_UNITS
+from undula.views.common.physical_labels import equal_to, labelled, physical_units_of
 
 #: Names of units by quantity, as `undula.models.units.Units.names` returns them.
 UnitNames = Mapping[str, str]
@@ -39,7 +42,6 @@ ACTIVE_COLOUR = "#E69F00"
 DISSIPATION_COLOUR = "#222222"
 
 SHORT_TIME_LABEL = r"time $t$  $[T]$"
-TIP_LABEL = "tip position\n" r"$x,\ y,\ z$  $[L]$"
 RATE_UNIT = r"cycles per $T$"
 PHASE_LABEL = "phase in the last period  [periods]"
 ARC_LABEL = r"arc length $s$  $[L]$"
@@ -48,7 +50,6 @@ CYCLE_LABEL = "phase  [cycles]"
 
 _PARAMETER_LABELS = {
     "load.slope": r"slope $\alpha$",
-    "load.position": r"position $s_a$  $[L]$",
     "load.exponent": r"exponent $p$",
     "model.drag_ratio": r"drag ratio $\gamma$",
     "model.base_spring": r"base spring $K_0$  $[K]$",
@@ -89,17 +90,22 @@ _SETTINGS = {
 }
 
 
-def figure_style() -> AbstractContextManager[None]:
+@contextmanager
+def figure_style(physical: Scales | xr.Dataset | None = None) -> Iterator[None]:
     """Set the style of all figures within a context.
 
-    Returns
-    -------
-    context manager
-        In the context matplotlib has its default settings with those of this package, independent
-        of the user's settings, which are restored afterwards.
+    In the context matplotlib has its default settings with those of this package, independent of
+    the user's settings, which are restored afterwards.
+
+    Parameters
+    ----------
+    physical
+        Scales, or a stored result that has some, whose physical units the labels state; None for
+        labels without physical units.
     """
     settings: Any = {**_plain_defaults(), **_SETTINGS}
-    return mpl.rc_context(settings)
+    with mpl.rc_context(settings), labelled(physical_units_of(physical)):
+        yield
 
 
 def shape_colours(count: int) -> NDArray[np.float64]:
@@ -121,34 +127,48 @@ def shape_colours(count: int) -> NDArray[np.float64]:
 
 def force_label(units: UnitNames) -> str:
     """Return the name of the force with its unit."""
-    return rf"force $F$  $[{_symbols(units['force'])}]$"
+    return rf"force $F$  $[{_symbols(units['force'])}{equal_to('force')}]$"
+
+
+def tip_label() -> str:
+    """Return the name of the tip's coordinates with their unit."""
+    return "tip position\n" rf"$x,\ y,\ z$  $[L{equal_to('length')}]$"
 
 
 def energy_label(units: UnitNames) -> str:
     """Return the name of the bending energy with its unit."""
-    return "bending energy\n" rf"$E$  $[{_symbols(units['energy'])}]$"
+    return "bending energy\n" rf"$E$  $[{_symbols(units['energy'])}{_below('energy')}]$"
 
 
 def power_label(units: UnitNames) -> str:
     """Return the name of the power with its unit, that of the energy per T."""
     above, _, below = _symbols(units["energy"]).partition("/")
-    return "power\n" rf"$P$  $[{above}/{f'({below}T)' if below else 'T'}]$"
+    unit = f"{above}/{f'({below}T)' if below else 'T'}"
+    return "power\n" rf"$P$  $[{unit}{_below('power')}]$"
 
 
 def time_label(units: UnitNames) -> str:
     """Return the name of the time with the meaning of T."""
-    return rf"time $t$  $[T={_symbols(units['time'])}]$"
+    return rf"time $t$  $[T={_symbols(units['time'])}{equal_to('time')}]$"
 
 
 def growth_rate_label(*, paper_time: bool) -> str:
     """Return the name of the growth rate with its unit."""
-    unit = r"\gamma/T" if paper_time else "1/T"
-    return rf"growth rate $\mathrm{{Re}}\,\sigma$  $[{unit}]$"
+    physical = "" if paper_time else equal_to("rate")
+    unit = r"\gamma/T" if paper_time else f"1/T{physical}"
+    return rf"growth rate $\mathrm{{Re}}\,\sigma${_gap(physical)}$[{unit}]$"
 
 
 def frequency_label(*, paper_time: bool) -> str:
     """Return the name of the frequency with its unit."""
-    return f"frequency  [{frequency_unit(paper_time=paper_time)}]"
+    physical = "" if paper_time else equal_to("frequency")
+    return f"frequency{_gap(physical)}{frequency_in_brackets(paper_time=paper_time)}"
+
+
+def frequency_in_brackets(*, paper_time: bool) -> str:
+    """Return the unit of frequencies in square brackets, with its physical value."""
+    physical = "" if paper_time else equal_to("frequency")
+    return f"[{frequency_unit(paper_time=paper_time)}{f' ${physical}$' if physical else ''}]"
 
 
 def frequency_unit(*, paper_time: bool) -> str:
@@ -159,6 +179,8 @@ def frequency_unit(*, paper_time: bool) -> str:
 
 def parameter_label(name: str) -> str:
     """Return symbol and unit of a parameter such as "load.slope"; other names unchanged."""
+    if name == "load.position":
+        return rf"position $s_a$  $[L{equal_to('length')}]$"
     return _PARAMETER_LABELS.get(name, name)
 
 
@@ -208,6 +230,17 @@ def write_title(
 
 def _width(text: Text) -> float:
     return float(text.get_window_extent().width)
+
+
+def _gap(physical: str) -> str:
+    """Return the gap between a name and its unit: a new line before a physical value."""
+    return "\n" if physical else "  "
+
+
+def _below(quantity: str) -> str:
+    """Return the physical value of one unit as `equal_to` does, in a line of its own."""
+    physical = equal_to(quantity)
+    return f"$\n${physical}" if physical else ""
 
 
 def _symbols(unit: str) -> str:

@@ -13,12 +13,17 @@ from matplotlib.ticker import MaxNLocator
 
 from undula.analysis.linear.curves import GrowthCurve
 from undula.arrays import Array
+from undula.models.scales import Scales
 from undula.views.common import style
 from undula.views.linear.growth_maps import draw_maps
 
 
 def growth_figure(
-    growth: GrowthCurve, *, title: str, units: style.UnitNames = style.FILAMENT
+    growth: GrowthCurve,
+    *,
+    title: str,
+    units: style.UnitNames = style.FILAMENT,
+    scales: Scales | None = None,
 ) -> Figure:
     """Draw the leading eigenvalue over the force, and over a parameter if the curve has one.
 
@@ -30,6 +35,8 @@ def growth_figure(
         Title of the figure.
     units : mapping of str to str
         Names of the model's units, by quantity; by default those of a filament.
+    scales : Scales, optional
+        SI values of the dimensionless units, which the labels then state.
 
     Returns
     -------
@@ -46,7 +53,7 @@ def growth_figure(
     >>> growth_figure(growth, title="tip force").get_size_inches().tolist()
     [10.0, 5.5]
     """
-    with style.figure_style():
+    with style.figure_style(scales):
         figure = style.headed_figure(title, paper_time=growth.paper_time)
         if growth.values is None:
             draw_growth(figure, growth, units, left=0.09, right=0.975, top=0.9)

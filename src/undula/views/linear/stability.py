@@ -14,7 +14,9 @@ from matplotlib.figure import Figure
 from undula.analysis.linear.curves import GrowthCurve
 from undula.analysis.linear.results import Onset, Spectrum
 from undula.errors import InputError
+from undula.models.scales import Scales
 from undula.views.common import style
+from undula.views.common.physical_labels import in_physical
 from undula.views.linear.growth import draw_growth, set_span, start_at_zero
 from undula.views.linear.mode_shapes import draw_mode
 
@@ -29,6 +31,7 @@ def stability_portrait(
     *,
     title: str,
     units: style.UnitNames = style.FILAMENT,
+    scales: Scales | None = None,
 ) -> Figure:
     """Draw growth rate, frequency and thresholds of the straight filament, and its leading mode.
 
@@ -44,6 +47,8 @@ def stability_portrait(
         Title of the figure.
     units : mapping of str to str
         Names of the model's units, by quantity; by default those of a filament.
+    scales : Scales, optional
+        SI values of the dimensionless units, which the labels then state.
 
     Returns
     -------
@@ -75,7 +80,7 @@ def stability_portrait(
             f"paper_time is {onset.paper_time} in onset, {growth.paper_time} in growth and"
             f" {spectrum.paper_time} in spectrum: compute all three in one time unit"
         )
-    with style.figure_style():
+    with style.figure_style(scales):
         figure = style.headed_figure(title, paper_time=growth.paper_time)
         upper, lower = draw_growth(figure, growth, units, left=0.085, right=0.6, top=0.82)
         marked = [mark.force for mark in _marks(onset)]
@@ -99,13 +104,19 @@ class _Mark:
 def _marks(onset: Onset) -> list[_Mark]:
     marks = []
     if onset.oscillatory_force is not None:
-        text = rf"rings from $F$ = {onset.oscillatory_force:.4g}"
+        force = _force(onset.oscillatory_force)
+        text = rf"rings from $F$ = {force}"
         marks.append(_Mark("oscillatory force", onset.oscillatory_force, text, "--"))
     if onset.hopf is not None:
         unit = style.frequency_unit(paper_time=onset.paper_time)
-        text = rf"Hopf at $F$ = {onset.hopf.force:.4g}, {onset.hopf.frequency:.4g} {unit}"
+        unit += in_physical("frequency", onset.hopf.frequency)
+        text = rf"Hopf at $F$ = {_force(onset.hopf.force)}, {onset.hopf.frequency:.4g} {unit}"
         marks.append(_Mark("Hopf force", onset.hopf.force, text, "-"))
     return marks
+
+
+def _force(value: float) -> str:
+    return f"{value:.4g}{in_physical('force', value)}"
 
 
 def _draw_marks(upper: Axes, lower: Axes, onset: Onset) -> None:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from undula.arrays import Array
 from undula.errors import InputError
+from undula.models.scales import Scales
 from undula.views.common import style
 from undula.views.common.legends import fitting_legend
 from undula.views.linear.growth import set_span, start_at_zero
@@ -32,6 +33,7 @@ def threshold_curves(
     parameter: str,
     title: str,
     units: style.UnitNames = style.FILAMENT,
+    scales: Scales | None = None,
 ) -> Figure:
     """Draw thresholds over a parameter, one line with markers for each kind.
 
@@ -46,6 +48,8 @@ def threshold_curves(
         Title of the figure.
     units : mapping of str to str
         Names of the models' units, by quantity; by default those of a filament.
+    scales : Scales, optional
+        SI values of the dimensionless units, which the labels then state.
 
     Returns
     -------
@@ -69,7 +73,7 @@ def threshold_curves(
         raise InputError("curves is empty: give at least one curve")
     for curve in curves:
         _check(*curve)
-    with style.figure_style():
+    with style.figure_style(scales):
         figure = style.headed_figure(title, paper_time=False)
         axes = figure.add_axes((0.09, 0.105, 0.885, 0.745))
         for (colour, marker), curve in zip(cycle(_LOOKS), curves, strict=False):

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from undula.analysis.linear.curves import CriticalCurve
 from undula.arrays import Array
+from undula.models.scales import Scales
 from undula.views.common import style
 from undula.views.common.legends import fitting_legend
 from undula.views.linear.growth import draw_points, set_span, start_at_zero
@@ -23,7 +24,11 @@ _DECADES_FROM = 30.0
 
 
 def threshold_figure(
-    curve: CriticalCurve, *, title: str, units: style.UnitNames = style.FILAMENT
+    curve: CriticalCurve,
+    *,
+    title: str,
+    units: style.UnitNames = style.FILAMENT,
+    scales: Scales | None = None,
 ) -> Figure:
     """Draw Hopf force, oscillatory force and frequency at onset over a parameter.
 
@@ -35,6 +40,8 @@ def threshold_figure(
         Title of the figure.
     units : mapping of str to str
         Names of the model's units, by quantity; by default those of a filament.
+    scales : Scales, optional
+        SI values of the dimensionless units, which the labels then state.
 
     Returns
     -------
@@ -50,7 +57,7 @@ def threshold_figure(
     >>> figure = threshold_figure(curve, title="linear load")
     """
     paper_time = any(onset.paper_time for onset in curve.onsets)
-    with style.figure_style():
+    with style.figure_style(scales):
         figure = style.headed_figure(title, paper_time=paper_time)
         grid = figure.add_gridspec(
             2, 1, left=0.09, right=0.975, bottom=0.105, top=0.85, hspace=0.14, height_ratios=(5, 3)
@@ -68,7 +75,8 @@ def threshold_figure(
         lower.yaxis.set_major_locator(MaxNLocator(4))
         upper.tick_params(labelbottom=False)
         upper.set_ylabel(style.force_label(units))
-        lower.set_ylabel(f"frequency at onset\n[{style.frequency_unit(paper_time=paper_time)}]")
+        unit = style.frequency_in_brackets(paper_time=paper_time)
+        lower.set_ylabel(f"frequency at onset\n{unit}")
         lower.set_xlabel(style.parameter_label(curve.parameter))
         figure.align_ylabels([upper, lower])
     return figure

@@ -77,7 +77,7 @@ def ramp_diagram(
     series = read_series(datasets)
     shown = _shown(series, thresholds)
     colours = verdict_colours([verdict for ramp in series for verdict in ramp.verdicts])
-    with style.figure_style():
+    with style.figure_style(datasets[0]):
         figure = Figure(figsize=(max(10.0, _COLUMN * len(series)), _HEIGHT))
         load = series[0].load if len(series) == 1 else ""
         style.write_title(figure, load if title is None else title, (_in(figure, 0.22), 0.955))

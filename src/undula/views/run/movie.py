@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 
 from undula.errors import InputError
 from undula.views.common import style
+from undula.views.common.physical_labels import in_physical
 from undula.views.run.portrait import headline
 from undula.views.run.quantities import energy_row, tip_row
 from undula.views.run.reading import read_scene
@@ -97,7 +98,7 @@ def movie(
     path = Path(path)
     check_video_path(path)
     scene = read_scene(run)
-    with style.figure_style():
+    with style.figure_style(run):
         times = frame_times(scene, frames)
         stage = _build(scene, times)
         size = stage.canvas.get_width_height()
@@ -189,7 +190,7 @@ def _move(scene: Scene, stage: Stage, time: float, shape: Floats, trail: Floats)
     stage.trail.do_3d_projection()
     stage.trail_shadow.set_data_3d(trail[:, 0], trail[:, 1], np.full(len(trail), floor))
     speed = "" if scene.focus is None or time < scene.focus[0] else "   ·   in slow motion"
-    stage.clock.set_text(f"$t$ = {time:.4f} $T${speed}")
+    stage.clock.set_text(f"$t$ = {time:.4f} $T${in_physical('time', time)}{speed}")
     for marker in stage.markers:
         marker.set_xdata([time, time])
     for part in stage.moving:

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from undula.errors import InputError
 from undula.views.common import style
+from undula.views.common.physical_labels import in_physical
 from undula.views.run.quantities import energy_row, power_row, tip_row
 from undula.views.run.reading import read_scene
 from undula.views.run.resample import curve_times, nodes_at, tip_at
@@ -56,7 +57,7 @@ def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> 
     if shapes < 2:
         raise InputError(f"shapes = {shapes}: ask for at least 2")
     scene = read_scene(run)
-    with style.figure_style():
+    with style.figure_style(run):
         figure = Figure(figsize=(10.0, 5.5))
         style.write_title(figure, headline(scene) if title is None else title, (0.022, 0.955))
         _draw_space(figure, scene.detail, shape_times(scene.detail, shapes))
@@ -69,7 +70,8 @@ def headline(scene: Scene) -> str:
     """Return load, verdict and frequency of a run in one line."""
     parts = [scene.load, scene.verdict]
     if scene.frequency is not None:
-        parts.append(f"{scene.frequency:.4g} {style.RATE_UNIT}")
+        physical = in_physical("frequency", scene.frequency)
+        parts.append(f"{scene.frequency:.4g} {style.RATE_UNIT}{physical}")
     return "   ·   ".join(part for part in parts if part)
 
 

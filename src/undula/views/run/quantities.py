@@ -43,7 +43,7 @@ def tip_row(scene: Scene) -> Row:
         Curve(name, colour, scene.nodes[:, -1, k], coordinate(k), dashes)
         for k, (name, colour, dashes) in enumerate(looks)
     )
-    return Row(style.TIP_LABEL, tuple(curves))
+    return Row(style.tip_label(), tuple(curves))
 
 
 def energy_row(scene: Scene) -> Row:

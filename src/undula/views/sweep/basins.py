@@ -71,7 +71,7 @@ def basin_diagram(
         raise InputError("there are no shares of verdicts; give those of a sweep with answers")
     names = [str(name) for name in basins["tries"].dims]
     x, y = laid_out([name for name in names if basins.sizes[name] > 1] or names[:1])
-    with style.figure_style():
+    with style.figure_style(basins):
         figure = Figure(figsize=_SIZE)
         style.write_title(figure, title or "", (0.022, 0.962))
         verdicts = ordered(str(name) for name in basins["verdict"].values)

@@ -93,7 +93,7 @@ def phase_diagram(
     >>> phase_diagram(stored).savefig("diagram.png")
     """
     right, above = diagram_axes(store)
-    with style.figure_style():
+    with style.figure_style(store):
         figure = Figure(figsize=_SIZE)
         style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         if above is None:

@@ -81,7 +81,7 @@ def gallery(store: xr.Dataset, *, title: str | None = None) -> Figure:
     x, y = diagram_axes(store)
     across = even_selection(store[x].values, _ACROSS if y else _ACROSS * _UP)
     up = [0.0] if y is None else even_selection(store[y].values, _UP)
-    with style.figure_style():
+    with style.figure_style(store):
         figure = Figure(figsize=(_WIDTH, _HEIGHT))
         style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         if y is None:

@@ -90,7 +90,7 @@ def mean_paths(
     shown = [(dot, path) for dot, path in paths if path is not None]
     if not shown:
         raise InputError("no point of the store has kept its path yet; let the sweep go on")
-    with style.figure_style():
+    with style.figure_style(store):
         figure = Figure(figsize=_SIZE)
         style.write_title(figure, heading(store) if title is None else title, (0.022, 0.962))
         axes = diagram_on(figure, drawn, (x, y), (_LEFT, _BOTTOM, _RIGHT - _LEFT, 0.8))

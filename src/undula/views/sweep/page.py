@@ -16,6 +16,7 @@ from undula.analysis.observables.shapes import transverse
 from undula.arrays import Array
 from undula.schema.sweep_axes import axes_of
 from undula.views.common import style
+from undula.views.common.physical_labels import labelled, physical_units_of
 from undula.views.common.renamed_keyword import renamed_keyword
 from undula.views.sweep.axes import Border
 from undula.views.sweep.page_script import FRAME, SCRIPT
@@ -80,6 +81,16 @@ def phase_page(
     >>> stored = undula.load("results/point-loads.zarr")
     >>> size = Path("page.html").write_text(phase_page(stored), "utf-8")
     """
+    with labelled(physical_units_of(store)):
+        return _page(store, boundaries, contradicting, title)
+
+
+def _page(
+    store: xr.Dataset,
+    boundaries: Sequence[Border],
+    contradicting: Sequence[Note],
+    title: str | None,
+) -> str:
     names, dots = diagram_axes(store), dots_of(store)
     points = [_point(store, dot, note_at(dot, names, contradicting)) for dot in dots]
     content = {
@@ -119,7 +130,8 @@ def plotting_library() -> str:
 def _point(store: xr.Dataset, dot: Dot, note: str | None) -> dict[str, Any]:
     """Return the results at a dot for its page: table, shapes and plane of motion."""
     point_data = store.isel(dict(dot.index))
-    figures = [(name, f"{float(point_data[name]):.6g}") for name in axes_of(store)]
+    coordinates = ((name, point_data[name]) for name in axes_of(store))
+    figures = [(name, f"{float(value):.6g}{_physical(value)}") for name, value in coordinates]
     if dot.of > 1:
         figures.append(("tries", f"{dot.tries} of {dot.of} end so, the first is told"))
     if note is not None:
@@ -139,8 +151,17 @@ def _figure(name: str, value: xr.DataArray) -> list[tuple[str, str]]:
     unit = str(value.attrs.get("units", ""))
     if np.issubdtype(value.dtype, np.number):
         number = float(value)
-        return [(name, f"{number:.6g} {unit}".rstrip())] if np.isfinite(number) else []
+        text = f"{number:.6g} {unit}".rstrip() + _physical(value)
+        return [(name, text)] if np.isfinite(number) else []
     return [(name, str(value.item()))] if str(value.item()) else []
+
+
+def _physical(value: xr.DataArray) -> str:
+    """Return a number in its physical unit, in brackets after a blank; empty without."""
+    if "physical_unit" not in value.attrs:
+        return ""
+    number = float(value) * float(value.attrs["physical_factor"])
+    return f" ({number:.4g} {value.attrs['physical_unit']})"
 
 
 def _packed(shapes: Array) -> str:

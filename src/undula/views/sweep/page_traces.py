@@ -41,6 +41,10 @@ _SYMBOLS = {
     r"\gamma": "γ",
     r"\zeta": "ζ",
     r"_\perp": "⊥",
+    r"\mathrm": "",
+    "^{-1}": "⁻¹",
+    r"\mu ": "µ",
+    r"\,": " ",
     "_a": "ₐ",
     "_0": "₀",
     "^2": "²",
@@ -49,8 +53,8 @@ _SYMBOLS = {
 
 
 def plain(text: str) -> str:
-    """Return a label of figures with formulas in plain letters."""
-    return re.sub(r"\$(.*?)\$", lambda match: _letters(match[1]), text)
+    """Return a label of figures in one line, with formulas in plain letters."""
+    return re.sub(r"\$(.*?)\$", lambda match: _letters(match[1]), text).replace("\n", "  ")
 
 
 def layout(store: xr.Dataset, names: Names, dots: Sequence[Dot]) -> dict[str, Any]:
