@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from undula.analysis.solvers.criticality import criticality
     from undula.analysis.solvers.find import find
     from undula.analysis.solvers.find_threshold import threshold
+    from undula.analysis.solvers.inverse.solutions import Solution, Solutions
+    from undula.analysis.solvers.inverse.solve_for import solve_for
     from undula.analysis.solvers.periodic_orbits import follow_from_bifurcation
     from undula.analysis.solvers.threshold_record import Threshold, ThresholdCurve
     from undula.analysis.states.branch import Bifurcation, Bifurcations, Branch
@@ -95,6 +97,8 @@ _MODULE_OF = {
     "Scales": "undula.models.scales",
     "SearchStatus": "undula.analysis.states.not_found",
     "Sensitivities": "undula.analysis.sensitivity.sensitivities",
+    "Solution": "undula.analysis.solvers.inverse.solutions",
+    "Solutions": "undula.analysis.solvers.inverse.solutions",
     "Spectrum": "undula.analysis.linear.results",
     "Spinning": "undula.analysis.states.records",
     "State": "undula.analysis.states.state",
@@ -126,6 +130,7 @@ _MODULE_OF = {
     "planar": "undula.models.initial_states",
     "ramp": "undula.analysis.ramps.quasi_static",
     "sensitivities": "undula.analysis.sensitivity.sensitivities",
+    "solve_for": "undula.analysis.solvers.inverse.solve_for",
     "spectrum": "undula.analysis.linear.spectrum",
     "stability_along_force": "undula.analysis.maps.stability_along_force",
     "stability_boundaries": "undula.analysis.maps.stability_boundaries",
@@ -172,6 +177,8 @@ __all__ = [
     "Scales",
     "SearchStatus",
     "Sensitivities",
+    "Solution",
+    "Solutions",
     "Spectrum",
     "Spinning",
     "State",
@@ -204,6 +211,7 @@ __all__ = [
     "planar",
     "ramp",
     "sensitivities",
+    "solve_for",
     "spectrum",
     "stability_along_force",
     "stability_boundaries",

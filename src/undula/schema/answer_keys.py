@@ -7,6 +7,7 @@ no other keys, and need not hold all of them; docs/output.md states their meanin
 
 from collections.abc import Mapping
 
+from undula.schema.claim_keys import CLAIM
 from undula.schema.key_kinds import (
     ENERGY,
     FORCE,
@@ -265,14 +266,6 @@ UNITS: Keys = {
     "filament": plain("length_um", "stiffness_pn_um2", "viscosity_mpa_s", "slenderness"),
     "units": Named(plain("physical", "unit")),
     "converted": plain("quantity", "dimensionless", "physical", "unit"),
-}
-#: A claim of the paper and its value; also a row of claims.json.
-CLAIM: Keys = {
-    **plain("claim", "item", "figure", "title", "says", "published", "within", "over_a_range"),
-    **plain("command", "value", "error", "unit", "verdict", "reason", "because", "note"),
-    **plain("expected", "as_expected", "erratum", "silent", "steps", "where"),
-    # The settings that the value is computed at.
-    "at": Named(UNITLESS),
 }
 REPRODUCE: Keys = {
     **EVERY,

@@ -9,7 +9,6 @@ from undula.analysis.states.not_found import NotFound
 from undula.analysis.states.periodic_record import Periodic
 from undula.analysis.states.records import Equilibrium, Spinning
 from undula.app.commands.find_start import SearchStart
-from undula.app.commands.sensitivity import with_sensitivities
 from undula.models.scales import Quantity, Scales
 from undula.models.units import FILAMENT_UNITS, Units
 from undula.terminal.numbers import BODY, CURE
@@ -17,6 +16,7 @@ from undula.terminal.numbers import with_error as with_digits
 from undula.terminal.output import Answer
 from undula.terminal.physical import bracketed, scales_lines, with_physical
 from undula.terminal.progress import searching
+from undula.terminal.sensitivities_text import with_sensitivities
 from undula.terminal.units_text import force_in, units_lines
 
 #: Units of quantities by the beginning of their names; those of energies depend on the model.

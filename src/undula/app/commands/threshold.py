@@ -6,7 +6,6 @@ from typing import Any
 from undula.analysis.parameters import changed
 from undula.analysis.solvers.threshold_record import Threshold, ThresholdCurve
 from undula.analysis.solvers.thresholds import single_threshold, threshold_curve
-from undula.app.commands.sensitivity import with_sensitivities
 from undula.interrupts import interruptible
 from undula.models.model import Model
 from undula.models.scales import Scales
@@ -15,6 +14,7 @@ from undula.terminal.numbers import BODY, CURE, digits, on_links, with_error
 from undula.terminal.output import Answer
 from undula.terminal.physical import bracketed, scales_lines, with_physical
 from undula.terminal.progress import counted, searching
+from undula.terminal.sensitivities_text import with_sensitivities
 from undula.terminal.units_text import force_in, units_lines
 
 #: Advice where the search ended without a threshold.
