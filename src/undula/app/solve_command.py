@@ -55,6 +55,7 @@ def solve(
     ends = None if between is None else parse_between("--between", between)
     quantity, model = parse_target(target), build_model(wanted)
     with compilation_announced(notice):
-        answer = answer_solve(model, kind, quantity, by, ends, title=wanted.describe({by}))
+        title, scales = wanted.describe({by}), wanted.scales
+        answer = answer_solve(model, kind, quantity, by, ends, title=title, scales=scales)
     reply(answer.answer, answer.text, as_json=as_json)
     return exit_status(answer)

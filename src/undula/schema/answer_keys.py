@@ -195,12 +195,13 @@ THRESHOLD: Keys = {
 #: Units of the target and of the slope depend on the question.
 SOLVE: Keys = {
     **EVERY,
-    **plain("kind", "quantity", "target", "parameter", "between", "least", "most"),
-    **plain("reason", "not_searched"),
+    **plain("kind", "quantity", "target", "parameter", "least", "most", "reason", "not_searched"),
+    "between": OF_PARAMETER,
     "units": _NAMES,
     "solutions": {
         PARAMETER: UNITLESS,
-        **plain("value", "error", "solver_error", "slope", "stable", "bifurcation"),
+        **dict.fromkeys(("value", "error", "solver_error"), OF_PARAMETER),
+        **plain("slope", "stable", "bifurcation"),
         **_REFERENCE,
         **dict.fromkeys(("frequency", "second_frequency"), FREQUENCY),
         "force": FORCE,

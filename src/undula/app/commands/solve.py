@@ -8,9 +8,11 @@ from undula.analysis.solvers.inverse.solve_for import solve_for
 from undula.analysis.states.branch_json import extents_as_json
 from undula.interrupts import interruptible
 from undula.models.model import Model
+from undula.models.scales import Scales
 from undula.models.units import Units
 from undula.terminal.numbers import BODY, digits, on_links, with_error
 from undula.terminal.output import Answer
+from undula.terminal.physical import of_parameter, scales_lines, with_physical
 from undula.terminal.progress import located
 from undula.terminal.units_text import force_in, units_lines
 
@@ -23,6 +25,7 @@ def answer_solve(
     between: tuple[float, float] | None,
     *,
     title: str,
+    scales: Scales | None = None,
 ) -> Answer:
     """Return the answer to an inverse question.
 
@@ -40,6 +43,8 @@ def answer_solve(
         Range of the parameter; None for the default.
     title : str
         Beginning of the text.
+    scales : Scales or None
+        SI values of the dimensionless units; None for an answer without physical units.
 
     Raises
     ------
@@ -59,7 +64,8 @@ def answer_solve(
         early = interrupted()
     status = "interrupted" if early else "done" if solutions else "not found"
     answer = {"status": status, **solutions_answer(solutions, model.units)}
-    return Answer(answer, _text(title, solutions, model.units))
+    text = _text(title, solutions, model.units, scales)
+    return Answer(with_physical(answer, "solve", scales), text)
 
 
 def solutions_answer(solutions: Solutions, units: Units) -> dict[str, Any]:
@@ -109,13 +115,14 @@ def _solution_answer(solution: Solution, units: Units) -> dict[str, Any]:
     }
 
 
-def _text(title: str, solutions: Solutions, units: Units) -> str:
+def _text(title: str, solutions: Solutions, units: Units, scales: Scales | None) -> str:
     low, high = solutions.between
     lines = [
         f"{title}: {solutions.kind} with {solutions.quantity} {solutions.target:.8g}, solved for"
         f" {solutions.parameter} between {low:.6g} and {high:.6g}",
         *units_lines(units.names(), units.forces if solutions.parameter == FORCE else ()),
-        *(_line(solution, units) for solution in solutions),
+        *scales_lines(scales),
+        *(_line(solution, units, scales) for solution in solutions),
     ]
     if solutions.reason is not None:
         lines.append(f"  none: {solutions.reason}")
@@ -124,11 +131,12 @@ def _text(title: str, solutions: Solutions, units: Units) -> str:
     return "\n".join(lines)
 
 
-def _line(solution: Solution, units: Units) -> str:
+def _line(solution: Solution, units: Units, scales: Scales | None) -> str:
     """Return a solution with its error, against the body if that is known, and its state."""
     of_force = solution.parameter == FORCE
     place = _place(solution, units.force if of_force else "")
     bracketed = units.bracketed(solution.value) if of_force else ""
+    bracketed += of_parameter(scales, solution.parameter, solution.value, error=solution.error)
     line = f"  {solution.parameter} {place}{bracketed}: {_motion(solution)}"
     if solution.error in (None, solution.solver_error):
         return line
