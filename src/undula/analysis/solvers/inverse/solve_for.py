@@ -87,13 +87,13 @@ def solve_for(
     wanted = target_of(model, kind, target)
     if kind in THRESHOLDS:
         require_other_than_force(kind, by)
+    elif kind in ("spinning", "periodic"):
+        require_space(model)
     ends = range_of(model, kind, by, between)
     if kind in THRESHOLDS:
         curve = search_thresholds(model, wanted, by, ends, progress, stop)
         searched, found = curve.searched, curve.solutions(ends, stop)
     else:
-        if kind in ("spinning", "periodic"):
-            require_space(model)
         shared = model_along(model, kind, by, ends)
         question = Question(shared, wanted, by, ends, progress, stop)
         branch = search_branch(question)
