@@ -27,7 +27,7 @@ def test_a_branch_is_told_at_the_values_that_are_asked_for(values: str, ask: Ask
     found = answer(ask("follow", "spinning", *SIX, "--along", f"load.force={values}", "--json"))
     assert [point["load.force"] for point in found["points"]] == [60.0, 62.0, 64.0]
     for point in found["points"]:
-        state = un.find_spinning(un.Filament(6, un.TipLoad(point["load.force"])))
+        state = un.find(un.Filament(6, un.TipLoad(point["load.force"])), "spinning")
         assert point["frequency"] == pytest.approx(state.frequency, rel=1e-9)
         assert point["leading_rate"] == pytest.approx(state.leading_rate, rel=1e-6)
 
@@ -120,4 +120,4 @@ def test_a_ramp_takes_values_by_number_by_size_and_one_by_one(ask: Ask) -> None:
     assert values == [[1.0, 2.0, 3.0]] * 4
     remark = "undula: --along load.force=1:3:1 takes steps of 1; a later version may not, write"
     assert [one.told.startswith(remark) for one in asked] == [False, False, False, True]
-    assert np.array_equal(un.load_ramp("results/step/steps.nc")["value"], [1.0, 2.0, 3.0])
+    assert np.array_equal(un.load("results/step/steps.nc")["value"], [1.0, 2.0, 3.0])

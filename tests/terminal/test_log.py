@@ -29,7 +29,7 @@ def test_the_library_writes_nothing_unless_it_is_asked() -> None:
 
 
 def test_a_branch_logs_its_states_and_bifurcations(caplog: pytest.LogCaptureFixture) -> None:
-    state = un.find_spinning(un.Filament(8, un.TipLoad(130.0)))
+    state = un.find(un.Filament(8, un.TipLoad(130.0)), "spinning")
     with caplog.at_level(logging.DEBUG, logger="undula"):
         branch = un.follow(state, "load.force", 150.0)
     said = [(record.levelname, record.getMessage()) for record in caplog.records]

@@ -46,7 +46,7 @@ def states_at_values(
     Examples
     --------
     >>> import undula as un
-    >>> state = un.find_spinning(un.Filament(8, un.TipLoad(60.0)))
+    >>> state = un.find(un.Filament(8, un.TipLoad(60.0)), "spinning")
     >>> branch = un.follow(state, "load.force", 80.0)
     >>> states_at_values(branch, [65.0, 70.0]).values.tolist()
     [65.0, 70.0]
