@@ -53,7 +53,7 @@ def solve(
 
     wanted = read_model_input(file, changes or ())
     ends = None if between is None else parse_between("--between", between)
-    quantity, model = parse_target(target), build_model(wanted)
+    quantity, model = parse_target(target, wanted.scales), build_model(wanted)
     with compilation_announced(notice):
         title, scales = wanted.describe({by}), wanted.scales
         answer = answer_solve(model, kind, quantity, by, ends, title=title, scales=scales)

@@ -1,17 +1,38 @@
 """Targets on the command line: a quantity and its value, such as ``frequency=120``."""
 
 import math
+from collections.abc import Mapping
 
 from undula.errors import InputError
+from undula.models.scales import Quantity, Scales
+from undula.schema.unit_texts import example_of, has_unit, si_value
+
+#: Quantity of a target by the beginning of its name; it fixes the units that it may have.
+_QUANTITIES: Mapping[str, Quantity] = {
+    "frequency": "frequency",
+    "leading_rate": "frequency",
+    "bending_energy": "energy",
+    "tip_": "length",
+    "period": "time",
+    "value": "force",
+}
 
 
-def parse_target(text: str) -> tuple[str, float]:
+def parse_target(text: str, scales: Scales | None = None) -> tuple[str, float]:
     """Return the name and the value of a quantity from ``NAME=NUMBER``.
+
+    Parameters
+    ----------
+    text
+        Such as ``frequency=120``, or with scales ``frequency=20 Hz``.
+    scales
+        Those of the filament, if its input has a table ``[units]``.
 
     Raises
     ------
     InputError
-        The text has another form, or the number is not finite.
+        The text has another form, the number is not finite, or its unit needs scales or is of
+        another quantity.
     """
     name, equals, value = (part.strip() for part in text.partition("="))
     if not (name and equals and value):
@@ -19,12 +40,23 @@ def parse_target(text: str) -> tuple[str, float]:
     try:
         number = float(value)
     except ValueError:
-        raise InputError(
-            f"target {text}: {value} is no number; write it like frequency=120"
-        ) from None
+        number = _with_unit(text, name, value, scales)
     if not math.isfinite(number):
         raise InputError(f"target {text}: {value} is not a finite number; give one")
     return name, number
+
+
+def _with_unit(text: str, name: str, value: str, scales: Scales | None) -> float:
+    quantity = next((q for start, q in _QUANTITIES.items() if name.startswith(start)), None)
+    if quantity is None or not has_unit(value):
+        raise InputError(f"target {text}: {value} is no number; write it like frequency=120")
+    if scales is None:
+        raise InputError(
+            f"target {text} has a unit, which needs a table [units] with the filament's length and"
+            f" stiffness, such as units.length = '{example_of('length')}'; give one, or a number"
+            " without a unit"
+        )
+    return scales.from_si(quantity, si_value(f"target {name}", value, quantity))
 
 
 def parse_between(option: str, text: str) -> tuple[float, float]:
