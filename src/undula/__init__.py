@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from undula.analysis.regimes.lyapunov import Lyapunov, NotFollowed, lyapunov
     from undula.analysis.regimes.verdict import Verdict
     from undula.analysis.runs.dataset import dataset_of
-    from undula.analysis.runs.integrate import Progress, integrate
+    from undula.analysis.runs.integrate import integrate
+    from undula.analysis.runs.progress import Progress
     from undula.analysis.runs.run import Run
     from undula.analysis.sensitivity.sensitivities import Sensitivities, sensitivities
     from undula.analysis.solvers.branches import follow, follow_from_onset
@@ -88,7 +89,7 @@ _MODULE_OF = {
     "PointLoad": "undula.models.loads.analytic",
     "PowerLoad": "undula.models.loads.power",
     "ProfileLoad": "undula.models.loads.user_density",
-    "Progress": "undula.analysis.runs.integrate",
+    "Progress": "undula.analysis.runs.progress",
     "Ramp": "undula.analysis.ramps.ramp",
     "RampResult": "undula.analysis.ramps.quasi_static",
     "Range": "undula.analysis.observables.shapes",

@@ -14,8 +14,8 @@ from small_sweeps import sweep_of
 from undula.analysis.ramps.ramp import MOST_STEPS, Ramp
 from undula.analysis.run_settings import MAX_SAMPLES, Schedule
 from undula.analysis.runs import memory_needed as room
-from undula.analysis.runs.integrate import Progress
 from undula.analysis.runs.memory_needed import memory, needed_memory, refuse_too_large
+from undula.analysis.runs.progress import Progress
 from undula.inputs.input import parse_input
 from undula.inputs.overrides import read_toml
 from undula.inputs.ramp_values import parse_ramp

@@ -1,6 +1,6 @@
 """Progress of a run in words: reached time, step size, rate and remaining wall time."""
 
-from undula.analysis.runs.integrate import Progress
+from undula.analysis.runs.progress import Progress
 
 #: Wall time after which the rate is reliable, and wall time of an overlong run [s].
 RELIABLE_AFTER, FAR_TOO_LONG = 10.0, 86400.0

@@ -13,7 +13,7 @@ from undula.analysis.one_thread import on_one_thread
 from undula.analysis.ramps.ramp import Ramp, Step, ramp_steps
 from undula.analysis.record import Fact, Record
 from undula.analysis.run_settings import Schedule
-from undula.analysis.runs.integrate import Progress
+from undula.analysis.runs.progress import Progress, displayed
 from undula.arrays import Array, State
 from undula.models.initial_states import kicked
 from undula.models.model import Model
@@ -126,7 +126,7 @@ def ramp(
     samples: int = 4000,
     rtol: float = 1e-6,
     budget: float = float("inf"),
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[Progress], None] | bool | None = None,
 ) -> RampResult:
     """Change a parameter step by step; let the model settle at each value from its last shape.
 
@@ -154,8 +154,8 @@ def ramp(
         Relative error tolerance, from 1e-12 to 1e-2.
     budget : float
         Largest elapsed time [s]; the ramp then ends with the steps it has.
-    progress : callable, optional
-        Called with a `Progress` of the present run every few milliseconds.
+    progress : callable or True, optional
+        Called with a `Progress` of the present run every few milliseconds; True shows it.
 
     Returns
     -------
@@ -179,5 +179,6 @@ def ramp(
     course = Ramp(parameter, tuple(map(float, values)), back=back, kick=kick, seed=seed)
     schedule = Schedule(until="settled", limit=limit, samples=samples, rtol=rtol)
     begin: Any = kicked(course.models(model)[0]) if start is None else start
-    steps = ramp_steps(model, course, begin, schedule, budget=budget, progress=progress)
-    return RampResult(model, course, tuple(steps))
+    with displayed(progress, settling=True) as show:
+        steps = tuple(ramp_steps(model, course, begin, schedule, budget=budget, progress=show))
+    return RampResult(model, course, steps)

@@ -19,8 +19,9 @@ import numpy as np
 from undula.analysis.observables.shapes import Range
 from undula.analysis.parameters import changed, value_of
 from undula.analysis.run_settings import Ending, Schedule
-from undula.analysis.runs.integrate import Progress, integrate
+from undula.analysis.runs.integrate import integrate
 from undula.analysis.runs.last_period import last_period
+from undula.analysis.runs.progress import Progress
 from undula.analysis.runs.run import Run
 from undula.arrays import Instants, Nodes, Shapes, State
 from undula.errors import InputError, is_number

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 from undula.analysis.arguments import require_model
@@ -10,6 +10,7 @@ from undula.analysis.one_thread import on_one_thread
 from undula.analysis.regimes.verdict import UNDECIDED
 from undula.analysis.run_settings import Ending, Schedule
 from undula.analysis.runs.classify_run import CutShortError, Exponents, Watch
+from undula.analysis.runs.progress import Progress, displayed
 from undula.analysis.runs.run import Run
 from undula.analysis.runs.simulation import Simulation
 from undula.analysis.runs.stop_rule import (
@@ -36,32 +37,6 @@ CUT_SHORT_REASONS = ("they were interrupted", "they were out of their budget of 
 CUT_SHORT_ENDINGS = (Ending.INTERRUPTED, Ending.OUT_OF_TIME, Ending.FAILED)
 
 
-@dataclass(frozen=True)
-class Progress:
-    """Progress of a run.
-
-    Attributes
-    ----------
-    time, end : float
-        Time reached and latest end [T].
-    step : float
-        Length of the present step [T].
-    steps : int
-        Number of steps so far.
-    seconds : float
-        Elapsed time [s].
-    exponents : tuple of (str, float) or None
-        Name and finished share of a computation of Lyapunov exponents.
-    """
-
-    time: float
-    end: float
-    step: float
-    steps: int
-    seconds: float
-    exponents: tuple[str, float] | None = None
-
-
 @on_one_thread
 def integrate(
     model: Model,
@@ -74,7 +49,7 @@ def integrate(
     atol: float = 1e-10,
     budget: float = float("inf"),
     lyapunov: bool = False,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[Progress], None] | bool | None = None,
 ) -> Run:
     """Integrate a model in time.
 
@@ -100,8 +75,8 @@ def integrate(
         Largest elapsed time, with Lyapunov exponents [s]; the run then ends with what it has.
     lyapunov : bool
         True for Lyapunov exponents of every motion, not only of an irregular one.
-    progress : callable, optional
-        Called with a `Progress` every few milliseconds.
+    progress : callable or True, optional
+        Called with a `Progress` every few milliseconds; True shows a bar, or lines in a notebook.
 
     Returns
     -------
@@ -126,13 +101,14 @@ def integrate(
     schedule = Schedule(until=until, limit=limit, samples=samples, rtol=rtol, atol=atol)
     simulation = Simulation.begin(model, start, schedule)
     begun = time.monotonic()
-    run = carry_on(simulation, budget=budget, progress=progress)
-    if simulation.ending in CUT_SHORT_ENDINGS:
-        return Run.of(simulation, Exponents.NEVER)
-    if lyapunov:
-        left = budget - (time.monotonic() - begun)
-        return with_exponents(simulation, Exponents.ALWAYS, budget=left, progress=progress)
-    return run or Run.of(simulation)
+    with displayed(progress, settling=isinstance(until, str)) as show:
+        run = carry_on(simulation, budget=budget, progress=show)
+        if simulation.ending in CUT_SHORT_ENDINGS:
+            return Run.of(simulation, Exponents.NEVER)
+        if lyapunov:
+            left = budget - (time.monotonic() - begun)
+            return with_exponents(simulation, Exponents.ALWAYS, budget=left, progress=show)
+        return run or Run.of(simulation)
 
 
 def carry_on(

@@ -8,10 +8,10 @@ from undula.analysis.runs.dataset import dataset_of
 from undula.analysis.runs.integrate import (
     CUT_SHORT_ENDINGS,
     CUT_SHORT_REASONS,
-    Progress,
     carry_on,
     with_exponents,
 )
+from undula.analysis.runs.progress import Progress
 from undula.analysis.runs.run import Run
 from undula.app.commands.run_job import RunJob
 from undula.errors import InputError
