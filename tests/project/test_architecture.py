@@ -91,4 +91,4 @@ def test_only_the_store_opens_result_files() -> None:
     libraries = users_of("h5netcdf", "h5py", "netCDF4")
     callers = {name for name, tree in parsed() if any(map(NETCDF_CALLS.match, attributes(tree)))}
     # The reading on trial is the work of another process, which reads for nobody.
-    assert libraries | callers <= {"storage.run_file", "storage.trial_reading"}
+    assert libraries | callers <= {"storage.run_file", "storage.format_of", "storage.trial_reading"}

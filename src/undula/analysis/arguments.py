@@ -5,7 +5,6 @@ from typing import Any
 
 from undula.analysis.states.state import State
 from undula.errors import InputError
-from undula.models.linked_rod import LinkedRod
 
 
 def require_model(model: Any, verb: str) -> None:
@@ -23,7 +22,7 @@ def require_model(model: Any, verb: str) -> None:
     InputError
         It is no model.
     """
-    if not isinstance(model, LinkedRod):
+    if not _is_model(model):
         raise InputError(
             f"{verb} begins with a model, and {_named(model)} is none; give one such as"
             " undula.Filament(20, undula.TipLoad(75.0))"
@@ -40,14 +39,19 @@ def require_state(state: Any, verb: str) -> None:
     """
     if isinstance(state, State):
         return
-    if isinstance(state, LinkedRod):
+    if _is_model(state):
         cure = 'solve for one first, as undula.find(model, "spinning")'
     else:
         cure = "give what undula.find returns"
     raise InputError(f"{verb} begins with a state, and {_named(state)} is none; {cure}")
 
 
+def _is_model(value: Any) -> bool:
+    """Return whether a value has what solvers and steppers ask of any model, a user's own too."""
+    return all(hasattr(value, name) for name in ("equations", "links", "load", "straight"))
+
+
 def _named(value: Any) -> str:
-    if isinstance(value, LinkedRod):
+    if _is_model(value):
         return f"a {type(value).__name__}"
     return f"{type(value).__name__} {reprlib.repr(value)}"
