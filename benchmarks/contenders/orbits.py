@@ -102,7 +102,7 @@ class Orbit:
 def orbit(layout: str, segments: int, motion: str) -> Orbit:
     """Solve for a motion of a layout."""
     model = model_of(layout, segments, FORCES[motion])
-    found: Any = un.find_spinning(model) if motion == "spinning" else un.find_flapping(model)
+    found: Any = un.find(model, motion)
     if not found:
         raise RuntimeError(f"{layout}, {segments} segments: {found.reason}")
     if motion == "spinning":

@@ -89,7 +89,7 @@ def test_a_stored_run_keeps_its_units_when_it_is_resumed(ask: Ask, own_folder: P
     file = own_folder / "results" / "run" / "run.nc"
     found = answer(ask("resume", file, "--until", "0.03", "--no-movie", "--json"))
     assert found["physical"]["time"] == {"value": pytest.approx(0.03 * SCALES.time), "unit": "s"}
-    stored = un.load_result(file)
+    stored = un.load(file)
     assert json.loads(stored.attrs[UNITS_PHYSICAL]) == SCALES.units()
     assert json.loads(stored.attrs["input"])["units"]["length"] == "12 um"
     energy = stored["bending_energy"]

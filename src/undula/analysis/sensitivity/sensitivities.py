@@ -52,7 +52,7 @@ class Sensitivities(Record, Mapping[str, Mapping[str, float]]):
     >>> state = un.find(un.Filament(8, un.TipLoad(75.0)), "spinning")
     >>> slopes = un.sensitivities(state)
     >>> f"{slopes['load.force']['frequency']:.3f} turns per T for each B/L^2"
-    '1.878 turns per T for each B/L^2'
+    '1.626 turns per T for each B/L^2'
     """
 
     of: str

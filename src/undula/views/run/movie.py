@@ -14,12 +14,13 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from undula.analysis.runs.run import Run
 from undula.errors import InputError
 from undula.views.common import style
 from undula.views.common.physical_labels import in_physical
 from undula.views.run.portrait import headline
 from undula.views.run.quantities import energy_row, tip_row
-from undula.views.run.reading import read_scene
+from undula.views.run.reading import read_scene, run_dataset
 from undula.views.run.resample import nodes_at, tip_at
 from undula.views.run.scene import Floats, Scene
 from undula.views.run.space import fading_trail, ground, space_axes
@@ -53,7 +54,7 @@ class Stage:
 
 
 def movie(
-    run: xr.Dataset,
+    run: xr.Dataset | Run,
     path: Path | str,
     *,
     frames: int = 240,
@@ -64,8 +65,8 @@ def movie(
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A stored run, as `undula.load_result` returns it.
+    run : xarray.Dataset or Run
+        A run, stored or as `undula.integrate` returns it.
     path : Path or str
         The file, ending in .mp4; an older file is replaced when the new one is complete.
     frames : int
@@ -97,8 +98,9 @@ def movie(
         raise InputError(f"frames = {frames}, fps = {fps}: ask for at least 2 frames and 1 fps")
     path = Path(path)
     check_video_path(path)
-    scene = read_scene(run)
-    with style.figure_style(run):
+    dataset = run_dataset(run)
+    scene = read_scene(dataset)
+    with style.figure_style(dataset):
         times = frame_times(scene, frames)
         stage = _build(scene, times)
         size = stage.canvas.get_width_height()

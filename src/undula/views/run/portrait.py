@@ -11,11 +11,12 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
+from undula.analysis.runs.run import Run
 from undula.errors import InputError
 from undula.views.common import style
 from undula.views.common.physical_labels import in_physical
 from undula.views.run.quantities import energy_row, power_row, tip_row
-from undula.views.run.reading import read_scene
+from undula.views.run.reading import read_scene, run_dataset
 from undula.views.run.resample import curve_times, nodes_at, tip_at
 from undula.views.run.scene import Floats, Scene
 from undula.views.run.space import draw_shapes, draw_tip_path, space_axes
@@ -24,13 +25,13 @@ from undula.views.run.traces import draw_traces
 _PATH_POINTS = 800
 
 
-def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> Figure:
+def portrait(run: xr.Dataset | Run, *, title: str | None = None, shapes: int = 28) -> Figure:
     """Draw the shapes of a run over its last period, and its history.
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A stored run, as `undula.load_result` returns it.
+    run : xarray.Dataset or Run
+        A run, stored or as `undula.integrate` returns it.
     title : str, optional
         Title of the figure; by default load, verdict and frequency.
     shapes : int
@@ -56,8 +57,9 @@ def portrait(run: xr.Dataset, *, title: str | None = None, shapes: int = 28) -> 
     """
     if shapes < 2:
         raise InputError(f"shapes = {shapes}: ask for at least 2")
-    scene = read_scene(run)
-    with style.figure_style(run):
+    dataset = run_dataset(run)
+    scene = read_scene(dataset)
+    with style.figure_style(dataset):
         figure = Figure(figsize=(10.0, 5.5))
         style.write_title(figure, headline(scene) if title is None else title, (0.022, 0.955))
         _draw_space(figure, scene.detail, shape_times(scene.detail, shapes))

@@ -17,15 +17,32 @@ NEEDED = ("nodes", "bending_energy", "active_power", "dissipation", "rotation_an
 _CLOSE = "close_"
 
 
-def read_scene(run: xr.Dataset | Run) -> Scene:
+def run_dataset(run: xr.Dataset | Run) -> xr.Dataset:
+    """Return a run as a dataset, stored or as `undula.integrate` returns it.
+
+    Raises
+    ------
+    InputError
+        It is no run.
+    """
+    if isinstance(run, Run):
+        return dataset_of(run)
+    if not isinstance(run, xr.Dataset):
+        raise InputError(
+            f"{type(run).__name__} is no run; give what undula.integrate or undula.load returns"
+        )
+    return run
+
+
+def read_scene(run: xr.Dataset) -> Scene:
     """Return the scene of a run.
 
     Parameters
     ----------
-    run : xarray.Dataset or Run
-        A run, stored or as `undula.integrate` returns it; with dims time, node and axis, the
-        variables in `NEEDED` and the attribute "summary". Variables such as "close_nodes" with the
-        dim close_time show its last part at finer intervals.
+    run : xarray.Dataset
+        A run with dims time, node and axis, the variables in `NEEDED` and the attribute "summary".
+        Variables such as "close_nodes" with the dim close_time show its last part at finer
+        intervals.
 
     Returns
     -------
@@ -37,12 +54,6 @@ def read_scene(run: xr.Dataset | Run) -> Scene:
     InputError
         A variable or the summary is missing, or the run has fewer than two samples.
     """
-    if isinstance(run, Run):
-        run = dataset_of(run)
-    if not isinstance(run, xr.Dataset):
-        raise InputError(
-            f"{type(run).__name__} is no run; give what undula.integrate or undula.load returns"
-        )
     missing = [name for name in NEEDED if name not in run]
     if missing or "summary" not in run.attrs:
         raise InputError(
