@@ -32,6 +32,7 @@ COMMANDS = [
     "step {} --along load.force=1:2:2 --out new",
     "step --along load.force=1:2:2 --out {}",
     "stability {}",
+    "solve spinning frequency=120 {} --by load.force",
     "stability --plot {}",
     "find spinning {}",
     "find periodic --run {}",

@@ -26,7 +26,7 @@ COMMANDS = {
     "straight": ["follow", "straight", "--along", "load.force=20:50"],
     "threshold": ["threshold", "onset"],
     "thresholds": ["threshold", "onset", "--along", "model.drag_ratio=1,2"],
-    "step": ["step", "--along", "load.force=0:5:5", "--set", "time.until=0.02"],
+    "step": ["step", "--along", "load.force=0:5:5.0", "--set", "time.until=0.02"],
     "nothing": ["find", "spinning", "--set", "load.force=4"],
 }
 

@@ -14,7 +14,7 @@ def test_run_is_the_first_command_of_the_help(ask: Ask) -> None:
     listed = text(ask("--help")).partition("Commands:\n")[2]
     names = re.findall(r"^  (\w+) ", listed, re.MULTILINE)
     assert names[:4] == ["run", "resume", "plot", "movie"]
-    assert len(names) == len(set(names)) == 13
+    assert len(names) == len(set(names)) == 14
 
 
 def test_the_version_is_that_of_the_package(ask: Ask) -> None:

@@ -36,6 +36,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # Status of typer for a shell without completion, which it has named on standard error.
 _UNKNOWN_SHELL = 1
+_COMPLETION = ("--install-completion", "--show-completion")
 
 app = typer.Typer(
     name="undula",
@@ -87,7 +88,8 @@ def _execute(words: Sequence[str]) -> int:
         # Typer turns KeyboardInterrupt into this status.
         if status == INTERRUPTED:
             return interrupted()
-        return BAD_INPUT if status == _UNKNOWN_SHELL else status
+        completes = any(word.partition("=")[0] in _COMPLETION for word in words)
+        return BAD_INPUT if completes and status == _UNKNOWN_SHELL else status
     except KeyboardInterrupt:
         return interrupted()
     except SystemExit as end:  # of typer's options on completion

@@ -12,6 +12,7 @@ from undula.storage.ramp_file import STEPS, load_ramp
 from undula.storage.record_file import RECORD, load_record
 from undula.storage.result_kinds import RUN
 from undula.storage.run_file import load_result
+from undula.sweeps.layout import FORMAT
 from undula.sweeps.store import load_sweep
 
 
@@ -45,13 +46,12 @@ def load(path: Path | str) -> xr.Dataset | Record:
     True
     """
     path = Path(path)
-    if path.is_dir():
-        return load_sweep(path)
     kind = format_of(path)
     readers: dict[str, Callable[[Path], xr.Dataset | Record]] = {
         RUN.format: load_result,
         STEPS.format: load_ramp,
         RECORD.format: load_record,
+        FORMAT: load_sweep,
     }
     if kind not in readers:
         raise InputError(
