@@ -49,6 +49,7 @@ def test_the_straight_state_is_told_at_the_values_that_are_asked_for(ask: Ask) -
     assert chosen["bifurcations"] == whole["bifurcations"]
 
 
+@pytest.mark.slow
 def test_several_kinds_are_answered_one_after_another_and_drawn_in_one_figure(ask: Ask) -> None:
     words = ["--set", "model.segments=4", "--along", "load.force=onset:44"]
     found = answer(ask("follow", "spinning", "flapping", *words, "--plot", "a.svg", "--json"))
@@ -110,6 +111,7 @@ def test_a_wrong_way_or_kind_is_refused_in_one_sentence(words: str, said: str, a
     assert not list(Path().iterdir())
 
 
+@pytest.mark.slow
 def test_a_ramp_takes_values_by_number_by_size_and_one_by_one(ask: Ask) -> None:
     quick = [*SIX, "--set", "time.until=0.01", "--set", "time.samples=20", "--json", "--overwrite"]
     asked = [

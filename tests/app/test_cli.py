@@ -211,6 +211,7 @@ def test_an_existing_result_is_refused_before_computing_and_replaced_when_asked(
     assert not Path("results/run/run.mp4").exists()
 
 
+@pytest.mark.slow
 def test_split_is_whole_to_round_off(ask: Ask) -> None:
     whole = ["--set", "time.until=0.04", "--set", "time.samples=41"]
     assert ask("run", *TINY, *whole, "--out", "whole")[0] == 0

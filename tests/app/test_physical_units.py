@@ -84,6 +84,7 @@ def test_a_force_and_a_time_are_given_in_their_units(ask: Ask) -> None:
     assert found["physical"]["time"] == {"value": pytest.approx(0.02), "unit": "s"}
 
 
+@pytest.mark.slow
 def test_a_stored_run_keeps_its_units_when_it_is_resumed(ask: Ask, own_folder: Path) -> None:
     text(ask("run", *FEW, *SHORT))
     file = own_folder / "results" / "run" / "run.nc"

@@ -183,6 +183,7 @@ def test_a_folder_that_cannot_be_made_is_passed_over(
     assert cache._folder(str(beside)) == str(beside / "__pycache__")
 
 
+@pytest.mark.slow
 def test_processes_that_begin_together_share_a_cache(toy: Path) -> None:
     several = [
         subprocess.Popen(command(), cwd=toy, stdout=subprocess.PIPE, text=True) for _ in range(3)

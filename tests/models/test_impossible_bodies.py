@@ -90,6 +90,7 @@ def test_links_that_the_load_pushes_to_nothing_are_refused(
         assert "75" in told
 
 
+@pytest.mark.slow
 def test_the_command_refuses_both_at_once(tmp_path: Path) -> None:
     weak = ["--set", "model.inextensibility=weak", "--set", "model.tensile_stiffness=50"]
     bent = ["--set", "model.segments=10", "--set", "model.natural_curvature=[62.8,0.0]"]

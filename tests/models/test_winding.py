@@ -176,6 +176,7 @@ def test_the_mirror_image_winds_the_other_way(option: str) -> None:
 # ------------------------------------------------------------------ runs
 
 
+@pytest.mark.slow
 def test_runs_with_either_spring_agree_as_long_as_no_joint_passes_pi() -> None:
     runs = [
         un.integrate(two(8.0, spring), un.planar(two(8.0), 0.3), until=15.0, rtol=1e-8, atol=1e-11)

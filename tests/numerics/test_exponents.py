@@ -52,7 +52,10 @@ def test_the_exponents_of_lorenz_are_the_published_ones() -> None:
     assert errors.max() < 0.01
 
 
-@pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize(
+    "rtol",
+    [pytest.param(1e-5, marks=pytest.mark.slow), 1e-7, pytest.param(1e-9, marks=pytest.mark.slow)],
+)
 def test_the_exponents_of_lorenz_add_up_to_the_trace(rtol: float) -> None:
     blocks = followed(Known(LORENZ), ON_THE_BUTTERFLY, 3, 300.0, rtol)
     steps = sum(block.steps for block in blocks) / sum(block.time for block in blocks)

@@ -57,6 +57,7 @@ def test_former_names_warn_and_name_the_new_one(name: str) -> None:
         getattr(undula, name)
 
 
+@pytest.mark.slow
 def test_a_users_script_is_typed(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(USER_SCRIPT, encoding="utf-8")

@@ -13,10 +13,13 @@ from small_catalogue import small_catalogue
 from undula.app.cli import main
 
 BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
-pytestmark = pytest.mark.skipif(
-    BROWSER is None or DRIVER is None,
-    reason="no browser to look with: apt-get install chromium chromium-driver",
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        BROWSER is None or DRIVER is None,
+        reason="no browser to look with: apt-get install chromium chromium-driver",
+    ),
+]
 SIZES = {"desktop": (1400, 1000), "phone": (390, 844)}
 #: Seconds for a page of some megabytes on a busy machine.
 PATIENCE = 60.0
@@ -56,7 +59,6 @@ def opened(browser, report: Path) -> None:
     browser.get(report.as_uri())
 
 
-@pytest.mark.slow
 def test_all_figures_are_there_and_nothing_is_complained_of(browser, report) -> None:
     opened(browser, report)
     widths = browser.execute_script("return [...document.images].map((one) => one.naturalWidth)")
@@ -94,7 +96,6 @@ def test_rows_can_be_chosen_by_verdict(browser, report) -> None:
     assert sum(row.is_displayed() for row in rows) == 4
 
 
-@pytest.mark.slow
 def test_a_diagram_opens_to_be_pointed_at(browser, report) -> None:
     from selenium.webdriver.common.by import By
     from selenium.webdriver.support.ui import WebDriverWait

@@ -131,6 +131,7 @@ def test_mistakes_are_told_in_one_sentence(folder, capsys, words, culprit) -> No
     assert (folder / "full" / "thesis.tex").exists()
 
 
+@pytest.mark.slow
 def test_a_task_that_fails_is_told_and_the_others_are_done(tmp_path, capsys, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     wrong = ("--set load.profile=linear --set load.slope=0", "--set load.profile=linnear")

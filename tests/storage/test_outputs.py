@@ -277,6 +277,7 @@ def test_a_view_of_others_is_told_before_a_run_begins(
     assert files_of() == {name: MINE}
 
 
+@pytest.mark.slow
 def test_a_run_leaves_the_movie_of_others_and_removes_our_older_one(made: Path) -> None:
     Path("run.mp4").write_bytes(MINE)
     assert main(["run", *TINY, "--no-movie", "--out", "."]) == 0
@@ -416,6 +417,7 @@ def endless(folder: str) -> subprocess.Popen[str]:
     return run
 
 
+@pytest.mark.slow
 def test_of_two_runs_into_one_folder_the_second_is_refused_at_once(
     ask: Ask,
 ) -> None:

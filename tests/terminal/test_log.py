@@ -20,6 +20,7 @@ logging.getLogger("undula.anything").warning("unheard")
 """
 
 
+@pytest.mark.slow
 def test_the_library_writes_nothing_unless_it_is_asked() -> None:
     silent = in_process(sys.executable, "-c", CODE)
     assert silent == (0, "", "")

@@ -47,6 +47,7 @@ def test_a_run_without_standard_error_does_its_work(tmp_path) -> None:
     assert Path(tmp_path, json.loads(done.stdout)["output"]).exists()
 
 
+@pytest.mark.slow
 def test_without_standard_output_the_answer_goes_to_standard_error(tmp_path, said) -> None:
     done = shell("undula stability >&-", tmp_path)
     assert (done.returncode, done.stdout, done.stderr.decode()) == (0, b"", said)
@@ -62,6 +63,7 @@ def test_files_are_not_opened_in_the_place_of_a_closed_stream(tmp_path) -> None:
     assert (tmp_path / "told").read_text() == "True\n"
 
 
+@pytest.mark.slow
 def test_a_full_output_is_told_in_one_sentence(tmp_path) -> None:
     for words in ("units --force 1", "units --force 1 --json", "--help", "units --help"):
         done = shell(f"undula {words} >/dev/full", tmp_path)
@@ -94,6 +96,7 @@ def test_an_answer_is_told_in_the_letters_that_there_are(tmp_path, said, encodin
     assert text.stdout.decode(encoding) == expected
 
 
+@pytest.mark.slow
 def test_json_is_the_same_in_every_locale(tmp_path) -> None:
     told = [
         shell("undula stability --json", tmp_path, **environment).stdout

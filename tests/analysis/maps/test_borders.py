@@ -60,6 +60,7 @@ def test_the_onset_is_that_of_the_links_as_they_are_and_tends_to_that_of_the_fil
     assert abs(limit - filament) < error < 1e-2 * filament
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "kind", "before"),
     [
@@ -110,6 +111,7 @@ def test_a_branch_born_downwards_has_a_fold_below_the_onset() -> None:
     assert not un.find(LOW.with_(force=0.99 * fold), "spinning")
 
 
+@pytest.mark.slow
 def test_values_without_a_border_are_gaps_with_reasons() -> None:
     borders = over_position()
     onsets = borders.curve("onset")[0]

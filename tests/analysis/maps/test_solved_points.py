@@ -51,6 +51,7 @@ def test_a_branch_is_read_off_where_single_searches_end(kind: str, force: float)
     assert at(force)[kind] == ("stable" if state.stable else "unstable")
 
 
+@pytest.mark.slow
 def test_the_straight_state_has_the_rate_of_its_spectrum() -> None:
     for force in FORCES:
         rate = spectrum(EIGHT, force, method="discrete", count=1).rates[0]

@@ -71,6 +71,7 @@ def test_a_planar_beat_has_the_exponents_of_its_multipliers(rtol: float) -> None
     assert found.beyond_symmetry_error < 0.05 * abs(beat.leading_rate)
 
 
+@pytest.mark.slow
 def test_a_beat_confined_to_its_plane_knows_of_disturbances_in_it_only() -> None:
     beat = un.find(filament(75.0, confined=True), "flapping")
     x = beat.model.from_nodes(beat.nodes[0])
@@ -90,6 +91,7 @@ def test_an_unstable_beat_has_a_positive_exponent_that_is_no_chaos() -> None:
     assert found.beyond_symmetry > 5.0 * found.beyond_symmetry_error
 
 
+@pytest.mark.slow
 def test_a_motion_that_is_periodic_up_to_a_turn_has_two_zero_exponents() -> None:
     model = filament(400.0)
     run = un.integrate(model, un.kicked(model), until="settled")
@@ -122,6 +124,7 @@ def test_the_exponent_of_chaos_depends_on_no_tolerance_and_no_seed() -> None:
     assert one.error < 0.1 * one.value
 
 
+@pytest.mark.slow
 def test_a_chain_of_three_links_spins_with_the_exponents_of_its_spectrum() -> None:
     state = un.find(un.Chain(3, un.TipLoad(20.0)), "spinning")
     found = lyapunov(state.model, state.x, 100.0 / state.frequency)
@@ -188,6 +191,7 @@ def test_one_pair_shows_no_scatter_and_is_refused() -> None:
     assert "pairs = 1" in complaint(lambda: finite_separation(model, x, 0.01, pairs=1))
 
 
+@pytest.mark.slow
 def test_joints_that_have_wound_up_are_followed_but_not_started_from_again() -> None:
     model = un.Chain(2, un.TipLoad(60.0), confined=True, spring="unwrapped")
     run = un.integrate(model, un.planar(model, 0.3), until=20.0)

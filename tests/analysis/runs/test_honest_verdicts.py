@@ -163,6 +163,7 @@ def test_a_disturbance_that_first_falls_is_waited_for_until_it_grows() -> None:
     assert 0.02 + early.longer < run.motion.time[-1]
 
 
+@pytest.mark.slow
 def test_a_held_body_that_rests_where_it_would_not_stay_is_undecided() -> None:
     # Beyond its Hopf point, and started there: the shape solved for is exact.
     held = un.Filament(8, un.TipLoad(100.0), natural_curvature=(1.0, 0.0))
@@ -272,6 +273,7 @@ def test_steps_of_a_series_keep_to_the_same_rules() -> None:
     assert [step.verdict for step in steps] == ["undecided", "undecided"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["run"])
 def test_the_command_tells_it_with_the_cure(tmp_path: Path, command: str) -> None:
     words = ["--set", "model.segments=10", "--set", "start.amplitude=1e-10", "--json"]

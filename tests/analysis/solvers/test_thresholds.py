@@ -87,6 +87,7 @@ def test_a_threshold_tells_itself_in_one_line() -> None:
     assert str(none) == "no spinning-lost: it stays stable"
 
 
+@pytest.mark.slow
 def test_spinning_is_lost_and_flapping_gained_at_forces_of_their_own() -> None:
     lost, gained = value_of(of_eight("spinning-lost")), value_of(of_eight("flapping-gained"))
     # Both states are stable between the two: where a motion ends depends on where it starts.
