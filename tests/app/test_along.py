@@ -41,6 +41,7 @@ def test_values_change_no_bifurcation(ask: Ask) -> None:
     assert chosen["points"][-1] == whole["points"][-1]
 
 
+@pytest.mark.slow
 def test_the_straight_state_is_told_at_the_values_that_are_asked_for(ask: Ask) -> None:
     words = ["follow", "straight", *SIX, "--json", "--along"]
     whole = answer(ask(*words, "load.force=20:50"))

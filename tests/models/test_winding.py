@@ -294,6 +294,7 @@ def beat(force: float) -> Flapping:
     return un.follow(state, "load.force", force).states[-1]
 
 
+@pytest.mark.slow
 def test_below_pi_the_beat_is_that_of_either_spring() -> None:
     folding, winding = un.find(two(8.0, "angle"), "flapping"), beat(8.0)
     assert isinstance(folding, Flapping)

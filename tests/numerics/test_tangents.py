@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import undula as un
+from cases import mostly_slow
 from systems import (
     ALL_STEPS,
     BEAD,
@@ -118,13 +119,19 @@ def test_changes_are_the_derivative_of_the_steps_of_known_systems(system: Known)
 
 @pytest.mark.parametrize(
     "model",
-    [
-        un.Filament(12, un.TipLoad(75.0)),
-        un.Filament(6, un.LinearLoad(200.0, 0.5), inextensibility="weak", tensile_stiffness=1e3),
-        un.Filament(6, un.TipLoad(75.0), confined=True),
-        un.Chain(3, un.TipLoad(20.0), drag_ratio=1.5),
-        un.Chain(2, un.TipLoad(20.0), confined=True, spring="unwrapped"),
-    ],
+    # The first one only: each of the others takes kernels that no other fast test needs.
+    mostly_slow(
+        [
+            un.Filament(12, un.TipLoad(75.0)),
+            un.Filament(
+                6, un.LinearLoad(200.0, 0.5), inextensibility="weak", tensile_stiffness=1e3
+            ),
+            un.Filament(6, un.TipLoad(75.0), confined=True),
+            un.Chain(3, un.TipLoad(20.0), drag_ratio=1.5),
+            un.Chain(2, un.TipLoad(20.0), confined=True, spring="unwrapped"),
+        ],
+        lambda model: model.links == 12,
+    ),
     ids=["filament", "weak", "confined", "chain", "winding"],
 )
 def test_changes_are_the_derivative_of_the_steps_of_models(model: Model) -> None:

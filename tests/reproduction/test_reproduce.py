@@ -68,6 +68,7 @@ def test_the_command_of_a_row_gives_its_value(folder, capsys) -> None:
     assert abs(value - row["value"]) <= row["error"] < 1e-9
 
 
+@pytest.mark.slow
 def test_a_quick_report_leaves_out_what_needs_the_full_one(folder, capsys) -> None:
     _, answer = reproduce(capsys, folder, "onset", "--quick", "--workers", "1")
     judged, left_out = answer["claims"]

@@ -83,9 +83,17 @@ def keys_of_the_input() -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {}
     for record in (SweepInput, StabilityInput):
         for table, field in record.model_fields.items():
-            for key, inner in field.annotation.model_fields.items():
+            # A table that may be left out is one of a union.
+            kinds = [
+                kind for kind in _alternatives(field.annotation) if hasattr(kind, "model_fields")
+            ]
+            for key, inner in kinds[0].model_fields.items():
                 found[f"{table}.{key}"] = tuple(_literals(inner.annotation))
     return found | {"model.natural_curvature.k1": (), "model.natural_curvature.k2": ()}
+
+
+def _alternatives(annotation: Any) -> tuple[Any, ...]:
+    return typing.get_args(annotation) or (annotation,)
 
 
 def _literals(annotation: Any) -> Iterator[str]:
@@ -204,13 +212,21 @@ SOUND_WORDS = {
 }
 
 
+def targets() -> st.SearchStrategy[str]:
+    """Return targets of inverse questions, sound and not."""
+    names = st.sampled_from(("frequency", "leading_rate", "value", "tip_radius", *JUNK))
+    return st.tuples(names, numbers()).map("=".join)
+
+
 def _odd(files: Files) -> Mapping[str, st.SearchStrategy[str]]:
     """Return what an option or argument may be given at all, by its name."""
     return {
         "changes": changes(),
         "along": along(),
         "at": along(),
-        "forces": ranges(),
+        "by": _keys,
+        "target": targets(),
+        **dict.fromkeys(("forces", "between"), ranges()),
         **dict.fromkeys(("kind", "kinds", "name", "view", "method"), st.sampled_from(WORDS)),
         "scheduler": st.sampled_from(("nowhere", "tcp://", "127.0.0.1:1", "tcp://127.0.0.1:99999")),
         "names": st.sampled_from(("missing-item", *JUNK)),
@@ -237,6 +253,9 @@ def _sound(command: str, files: Files) -> Mapping[str, st.SearchStrategy[str]]:
         "changes": st.sampled_from(SOUND_CHANGES),
         "along": ways,
         "at": st.just("load.force=50"),
+        "by": st.sampled_from(("load.force", "model.drag_ratio")),
+        "target": st.sampled_from(("frequency=60", "leading_rate=0", "value=40")),
+        "between": st.just("40:60"),
         "forces": st.sampled_from(("40:60:3", "75")),
         **dict.fromkeys(("kind", "kinds", "name", "view", "method"), words),
         "file": read.get(command, files.inputs),

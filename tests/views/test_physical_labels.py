@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-from undula.analysis.linear.results import CriticalCurve, GrowthCurve, Onset
+from undula.analysis.linear.curves import CriticalCurve, GrowthCurve
+from undula.analysis.linear.results import Onset
 from undula.models.scales import Scales
 from undula.models.units import FILAMENT_UNITS, chain_units
 from undula.schema.physical_units import UNITS_PHYSICAL

@@ -80,6 +80,7 @@ def test_on_both_sides_of_a_border_states_are_stable_and_unstable(
     assert (below.stable, above.stable) == (before, not before)
 
 
+@pytest.mark.slow
 def test_a_border_is_the_threshold_of_that_name() -> None:
     # Located to 1e-9 of the way that was followed, some hundreds.
     assert force_of("spinning-lost") == pytest.approx(
@@ -279,6 +280,7 @@ def test_borders_over_no_axis_of_the_store_are_refused() -> None:
 # ---------------------------------------------------------------- kept beside a study
 
 
+@pytest.mark.slow
 def test_borders_are_kept_and_read_again(tmp_path: Path) -> None:
     store = sweep()
     assert read_boundaries(tmp_path, store) == []

@@ -59,6 +59,7 @@ def test_the_straight_state_has_the_rate_of_its_spectrum() -> None:
         assert at(force)["straight"] == ("stable" if rate < 0.0 else "unstable")
 
 
+@pytest.mark.slow
 def test_the_verdict_is_the_stable_state_with_its_figures() -> None:
     spins, flaps = found("spinning", 100.0), found("flapping", 160.0)
     assert isinstance(spins, Spinning)

@@ -67,6 +67,7 @@ def test_a_frequency_that_leaves_its_peak_is_given_up() -> None:
     assert not refine(clock, signals, weights, 3.0, 3, 20, 1e-12, 1e-3)[1]
 
 
+@pytest.mark.slow
 def test_a_fit_is_judged_as_by_least_squares() -> None:
     clock, signals, weights = beat()
     weights = weights / weights.sum()

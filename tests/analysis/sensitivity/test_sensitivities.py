@@ -61,6 +61,7 @@ def test_of_a_spinning_state_by_every_parameter_of_model_load_and_table() -> Non
         assert_alike(slopes[parameter], solved_nearby(state, parameter), slopes.quantities)
 
 
+@pytest.mark.slow
 def test_of_a_bent_filament_by_its_curvature_and_its_anisotropy() -> None:
     curved = un.Filament(6, un.TipLoad(10.0), natural_curvature=(1.0, 0.0), bending_ratio=1.2)
     state = found(curved, "equilibrium")
