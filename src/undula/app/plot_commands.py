@@ -51,17 +51,16 @@ def plot(
 
 
 def _plot_file(result: Path, out: Path | None, *, overwrite: bool, as_json: bool) -> int:
-    """Draw a stored run or a stored ramp and answer; return the exit status."""
+    """Draw a stored run, a ramp or a record and answer; return the exit status."""
     from undula.app.commands.drawing import figure_path, save_figure
-    from undula.app.stored_files import load_run_or_ramp
+    from undula.app.stored_files import figure_of
     from undula.storage.outputs import claimed
     from undula.terminal.output import DONE, reply
-    from undula.views import portrait, ramp_diagram
 
     path, renewed = figure_path(result, out), out is None
-    stored, is_ramp = load_run_or_ramp(result)
+    figure = figure_of(result)
     with claimed(path, renewed=[path] * renewed, overwrite=overwrite, reads=[result]) as claim:
-        save_figure(ramp_diagram([stored]) if is_ramp else portrait(stored), path, claim)
+        save_figure(figure, path, claim)
     reply({"status": "done", "figure": str(path)}, str(path), as_json=as_json)
     return DONE
 

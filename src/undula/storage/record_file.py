@@ -42,8 +42,7 @@ def save_record(path: Path, record: Record, *, overwrite: bool = False) -> None:
     InputError
         The file exists or cannot be written, or a field cannot be stored.
     """
-    if path.suffix != ".nc":
-        raise InputError(f"{path} has to end in .nc, as the file is NetCDF; give such a name")
+    _check_name(path, overwrite=overwrite)
     arrays: list[Any] = []
     fields = encoded(record, arrays)
     stored = {f"{_PREFIX}{number}": _variable(number, a) for number, a in enumerate(arrays)}
@@ -69,9 +68,16 @@ def save_run(path: Path, run: Run, *, overwrite: bool = False) -> None:
     InputError
         As of `write_run`.
     """
+    _check_name(path, overwrite=overwrite)
+    write_run(path, dataset_of(run), run.checkpoint, overwrite=overwrite)
+
+
+def _check_name(path: Path, *, overwrite: bool) -> None:
+    """Refuse a name that is none of a NetCDF file, or is taken, before anything is made."""
     if path.suffix != ".nc":
         raise InputError(f"{path} has to end in .nc, as the file is NetCDF; give such a name")
-    write_run(path, dataset_of(run), run.checkpoint, overwrite=overwrite)
+    if path.exists() and not overwrite:
+        raise InputError(f"{path} exists already; give overwrite=True to replace it")
 
 
 def load_record(path: Path) -> Record:
