@@ -24,7 +24,7 @@ def require_model(model: Any, verb: str) -> None:
     """
     if not _is_model(model):
         raise InputError(
-            f"{verb} begins with a model, and {_named(model)} is none; give one such as"
+            f"{verb} begins with a model, but {_named(model)} was given; give one such as"
             " undula.Filament(20, undula.TipLoad(75.0))"
         )
 
@@ -43,7 +43,7 @@ def require_state(state: Any, verb: str) -> None:
         cure = 'solve for one first, as undula.find(model, "spinning")'
     else:
         cure = "give what undula.find returns"
-    raise InputError(f"{verb} begins with a state, and {_named(state)} is none; {cure}")
+    raise InputError(f"{verb} begins with a state, but {_named(state)} was given; {cure}")
 
 
 def _is_model(value: Any) -> bool:

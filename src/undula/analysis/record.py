@@ -29,17 +29,23 @@ class Fact:
         Its unit, empty for none.
     error : float or None
         Its estimated error, in the same unit; None without one.
+    on_links : int or None
+        Number of links, if the error is on these links alone and not against the body.
     """
 
     value: Any
     unit: str = ""
     error: float | None = None
+    on_links: int | None = None
 
     def __str__(self) -> str:
-        """Return value, error and unit."""
+        """Return value, error and unit; an error on given links alone is no ±."""
         if not isinstance(self.value, float):
             return "none" if self.value is None else str(self.value)
         error = "" if self.error is None else f" ± {self.error:.1g}"
+        if self.error is not None and self.on_links is not None:
+            known = f"({self.on_links} links, to {self.error:.1g})"
+            return " ".join(filter(None, (f"{self.value:.8g}", self.unit, known)))
         return f"{self.value:.8g}{error} {self.unit}".rstrip()
 
 

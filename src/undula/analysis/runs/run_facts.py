@@ -56,8 +56,9 @@ def facts_of(summary: Mapping[str, Any]) -> dict[str, Fact]:
         "links": Fact(summary["links"]),
         "time": Fact(summary["time"], "T"),
     }
+    on_links = None if summary["error_of"] == "body" else summary["links"]
     for name in ("frequency", "rotation_frequency", "shape_frequency"):
-        facts[name] = Fact(summary[name], units["frequency"], summary[f"{name}_error"])
+        facts[name] = Fact(summary[name], units["frequency"], summary[f"{name}_error"], on_links)
     for name, quantity in _RANGES.items():
         for part, value in summary[name].items():
             facts[f"{name}_{part}"] = Fact(value, units[quantity])

@@ -54,7 +54,7 @@ class Bifurcation(Record, Generic[S]):
         return {
             "kind": Fact(self.kind),
             "stability": Fact(self.stability),
-            "value": Fact(self.value, "", self.error),
+            "value": Fact(self.value, "", self.error, self.state.model.links),
             "frequency": Fact(self.frequency, "cycles per T"),
             "second_frequency": Fact(self.second_frequency, "cycles per T"),
         }
@@ -62,8 +62,8 @@ class Bifurcation(Record, Generic[S]):
     def __str__(self) -> str:
         """Return kind, value with its error on these links, and change of stability."""
         return (
-            f"{self.kind} at {self.value:.10g} ± {self.error:.1g} on these links, stability"
-            f" {self.stability}, {self.frequency:.8g} cycles per T"
+            f"{self.kind} at {self.value:.10g} ({self.state.model.links} links, located to"
+            f" {self.error:.1g}), stability {self.stability}, {self.frequency:.8g} cycles per T"
         )
 
     @property
@@ -164,7 +164,9 @@ class Branch(Record, Generic[S]):
             "states": Fact(len(self)),
             "complete": Fact(self.complete),
             **{
-                f"{point.name} ({point.kind})": Fact(point.value, "", point.error)
+                f"{point.name} ({point.kind})": Fact(
+                    point.value, "", point.error, point.state.model.links
+                )
                 for point in self.bifurcations
             },
         }
@@ -192,12 +194,13 @@ class Branch(Record, Generic[S]):
         """Return ends and bifurcations in one line."""
         ends = f"{self.values[0]:.6g} to {self.values[-1]:.6g}"
         stop = "" if self.complete else ", stopped early"
-        points = [f"{p.kind} at {p.value:.8g} ± {p.error:.1g}" for p in self.bifurcations[:2]]
+        points = [f"{p.kind} at {p.value:.8g} (to {p.error:.1g})" for p in self.bifurcations[:2]]
         more = len(self.bifurcations) - 2
         points += [f"{more} more"] if more > 0 else []
         found = "; ".join(points) if points else "no bifurcation"
         return (
-            f"{self.states[0].kind} along {self.parameter} from {ends}, {len(self)} states{stop}:"
+            f"{self.states[0].kind} along {self.parameter} from {ends}, {len(self)} states of"
+            f" {self.states[0].model.links} links{stop}:"
             f" {found}"
         )
 
